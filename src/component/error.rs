@@ -1,0 +1,49 @@
+//! What can go wrong at the interface, and its one severity map. Every message says what was found, what is
+//! allowed and what to do.
+
+use super::Mode;
+
+/// Errors of the component.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The scene could not be built.
+    #[error("cannot build scene: {0}")]
+    Setup(String),
+    /// A call in the wrong mode.
+    #[error("{call} is not allowed in mode {mode:?}; allowed in {allowed}")]
+    NotAllowedNow {
+        /// The call.
+        call: &'static str,
+        /// The mode it came in.
+        mode: Mode,
+        /// Modes in which it is allowed.
+        allowed: String,
+    },
+    /// An argument out of its range.
+    #[error("{call}: {what}: found {found}, allowed {allowed}")]
+    BadArgument {
+        /// The call.
+        call: &'static str,
+        /// Which argument or variable.
+        what: String,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// The solver gave up: names particle, time and quantity.
+    #[error("step failed: {0}")]
+    Solver(String),
+    /// Saved bytes that cannot be used.
+    #[error("saved state refused: {0}")]
+    Snapshot(String),
+}
+
+/// How bad an error is; adapters map this to FMI status, C code, exit code or bus reply.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The call was refused and nothing happened; the component goes on.
+    Refused,
+    /// The component is in mode Failed until restore or reset.
+    Failed,
+}

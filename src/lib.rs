@@ -1,0 +1,8 @@
+//! Sandgate: granular flow as a co-simulation component.
+#![forbid(unsafe_code)]
+
+pub mod component;
+pub mod material;
+pub mod scene;
+pub mod shape;
+pub mod solver;

@@ -1,0 +1,45 @@
+//! Every numerical choice a scene may make, with the defaults of docs/theory.md.
+
+/// How the viscous stress is integrated in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// Adjoint stress form, implicit viscosity, pressure diffusion: the default.
+    Implicit,
+    /// [A]'s explicit pair viscosity (A.27) with its regularisation (A.47, A.55) and step bound (A.39).
+    Explicit,
+}
+
+/// Numerical choices. All resolved: the scene reader fills in what a file leaves out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Numerics {
+    /// Particle spacing dp > 0 [m].
+    pub spacing: f64,
+    /// Smoothing length over spacing h/dp, 1.2 to 2.5 [1]; default 1.6.
+    pub smoothing_ratio: f64,
+    /// Artificial sound speed c0 [m/s]; default 10 max(sqrt(g H), expected speed).
+    pub sound_speed: f64,
+    /// Time integration.
+    pub scheme: Scheme,
+    /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.5.
+    pub courant: f64,
+    /// Viscosity cap: eta <= cap_time mu_s p [s]; default 20 sqrt(H/g)-like, at least 20 s.
+    pub cap_time: f64,
+    /// Density diffusion delta [1]; default 0.1, 0 switches it off.
+    pub density_diffusion: f64,
+    /// Time scale T_d that gates diffusion at rest: factor min(1, T_d gamma) [s].
+    pub diffusion_gate_time: f64,
+    /// Relaxation time of the strain rate in the equation of state [s].
+    pub strain_relaxation_time: f64,
+    /// Share of the viscous stress carried by the pair operator against zero-energy modes [1]; default 0.1.
+    pub pair_viscosity_share: f64,
+    /// Artificial viscosity alpha of [A] eq. 38 [1]; default 0.
+    pub artificial_viscosity: f64,
+    /// Relative tolerance of the viscous solve [1]; default 1e-4.
+    pub solver_tolerance: f64,
+    /// Most iterations of the viscous solve before it is an error.
+    pub solver_max_iterations: u32,
+    /// Random displacement of the starting lattice over dp [1]; default 0.1.
+    pub jitter: f64,
+    /// Seed of that displacement.
+    pub seed: u64,
+}
