@@ -1,1 +1,142 @@
-//! Engine placeholder.
+//! What a component drives: particles, walls, devices and gauges of either dimension behind one trait.
+//!
+//! The dimension is erased here, once per communication step and never per pair. The trait knows no mode, no
+//! variable table and no snapshot header; those stand in the modules beside it. `build` joins scene, state,
+//! solver and gauges.
+
+use super::{Error, MassLedger, ParticleView, Statistics};
+use crate::gauge::Reading;
+use crate::scene::Scene;
+use crate::solver::StepBound;
+
+/// An input over one communication step: `value + slope (t - t0)`, t0 being the start of the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Ramp {
+    /// Value at the start of the step, in the variable's unit.
+    pub(crate) value: f64,
+    /// Change per second within the step; 0 holds the value.
+    pub(crate) slope: f64,
+}
+
+impl Ramp {
+    /// Value `elapsed` seconds after the start of the step.
+    pub(crate) fn at(&self, elapsed: f64) -> f64 {
+        self.value + self.slope * elapsed
+    }
+}
+
+/// What the orchestrator wants during one communication step; in range at both of its ends.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Inputs {
+    /// Opening wanted of each gate, in the scene's order [1], 0 to 1.
+    pub(crate) gate_opening: Vec<Ramp>,
+    /// Rate wanted of each inflow, in the scene's order [kg/s].
+    pub(crate) inflow_rate: Vec<Ramp>,
+}
+
+/// What one call of [`Engine::advance`] did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Advance {
+    /// Internal steps taken.
+    pub(crate) substeps: u32,
+    /// Smallest internal step [s].
+    pub(crate) smallest_step: f64,
+    /// What bound that one.
+    pub(crate) bound_by: StepBound,
+    /// Iterations of the viscous solve, summed over internal steps.
+    pub(crate) iterations: u32,
+}
+
+/// A gate after the last advance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct GateState {
+    /// Opening it has [1], 0 to 1.
+    pub(crate) opening: f64,
+    /// Whether material kept it from following its input.
+    pub(crate) blocked: bool,
+    /// Impulse of the material on it over the last advance [N s].
+    pub(crate) impulse: [f64; 3],
+}
+
+/// An inflow after the last advance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct InflowState {
+    /// Mass let in since the start [kg].
+    pub(crate) mass: f64,
+    /// Whether material before its face kept it from letting in what was wanted.
+    pub(crate) blocked: bool,
+}
+
+/// All devices after the last advance, each list in the scene's order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Devices {
+    /// Gates.
+    pub(crate) gates: Vec<GateState>,
+    /// Inflows.
+    pub(crate) inflows: Vec<InflowState>,
+    /// Mass taken out by each outflow since the start [kg].
+    pub(crate) outflow_mass: Vec<f64>,
+    /// Impulse of the material on each wall over the last advance [N s].
+    pub(crate) wall_impulse: Vec<[f64; 3]>,
+}
+
+/// Why the solver gave up. The component is in mode Failed afterwards.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("at t = {time} s: {what}")]
+pub(crate) struct SolverError {
+    /// Simulated time [s].
+    pub(crate) time: f64,
+    /// Particle, quantity, what was found and what is allowed.
+    pub(crate) what: String,
+}
+
+/// The simulation behind a component.
+pub(crate) trait Engine: Send {
+    /// Advances from `start` to `end` exactly [s]; the inputs' slopes count from `start`.
+    ///
+    /// # Errors
+    /// The solver could not go on; the state is then not to be stepped any more.
+    fn advance(&mut self, start: f64, end: f64, inputs: &Inputs) -> Result<Advance, SolverError>;
+
+    /// Devices after the last advance (or at the start).
+    fn devices(&self) -> &Devices;
+
+    /// Readings of all gauges in the scene's order; `step` is the length of the last advance [s], 0 before the first.
+    fn sample(&self, step: f64) -> Vec<Reading>;
+
+    /// Everything that can change a later bit, independent of the number of threads.
+    ///
+    /// # Errors
+    /// The state is too large to encode.
+    fn save(&self) -> Result<Vec<u8>, String>;
+
+    /// Takes over what [`Engine::save`] gave, from this or another process.
+    ///
+    /// # Errors
+    /// The bytes are not such a state; the engine is then as it was.
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), String>;
+
+    /// The account of material.
+    fn ledger(&self) -> MassLedger;
+
+    /// Figures of the solver (without the number of communication steps, which the component counts).
+    fn statistics(&self) -> Statistics;
+
+    /// Particles as plain arrays, for logs and pictures.
+    fn particles(&self) -> ParticleView;
+
+    /// Wall and gate particles where they are now, for pictures [m].
+    fn wall_points(&self) -> Vec<[f64; 3]>;
+
+    /// Threads of the sweeps, 0 for all cores; results do not depend on it.
+    fn set_threads(&mut self, threads: usize);
+}
+
+/// Builds particles, walls, devices and gauges of a scene.
+///
+/// # Errors
+/// [`Error::Setup`] if the scene cannot be built.
+pub(crate) fn build(scene: &Scene) -> Result<Box<dyn Engine>, Error> {
+    let _ = scene;
+    Err(Error::Setup("not built yet".to_owned()))
+}
