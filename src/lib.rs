@@ -7,3 +7,4 @@ pub mod material;
 pub mod scene;
 pub mod shape;
 pub mod solver;
+pub mod state;
