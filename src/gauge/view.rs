@@ -1,0 +1,219 @@
+//! What gauges see: particles, wall particles and the box they are in. Borrowed for one sampling.
+
+use super::kernel::WendlandC2;
+use crate::state::CellGrid;
+
+/// Particles and walls at one time. All slices have one entry a particle.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a, const D: usize> {
+    /// Positions [m].
+    pub position: &'a [[f64; D]],
+    /// Masses [kg], for the whole width of a planar scene.
+    pub mass: &'a [f64],
+    /// Bulk densities [kg/m^3].
+    pub density: &'a [f64],
+    /// Pressures [Pa].
+    pub pressure: &'a [f64],
+    /// The grid over `position`.
+    pub cells: &'a CellGrid<D>,
+    /// The grid over wall and gate particles, one each spacing^D of solid; may be empty.
+    pub solid: &'a CellGrid<D>,
+    /// Particle spacing dp [m].
+    pub spacing: f64,
+    /// The kernel of the simulation.
+    pub kernel: WendlandC2<D>,
+    /// Out-of-plane width of planar scenes [m]; 1 in space.
+    pub width: f64,
+    /// Lower corner of the domain [m].
+    pub lower: [f64; D],
+    /// Upper corner of the domain [m].
+    pub upper: [f64; D],
+    /// Which axes are periodic.
+    pub periodic: [bool; D],
+}
+
+impl<const D: usize> View<'_, D> {
+    /// Whether a place is outside the domain (never along periodic axes).
+    #[must_use]
+    pub fn is_outside(&self, at: &[f64; D]) -> bool {
+        (0..D).any(|a| {
+            // Places on the rim belong to the domain, rounding included.
+            let slack = 1e-9 * (self.upper[a] - self.lower[a]);
+            !self.periodic[a] && !(self.lower[a] - slack..=self.upper[a] + slack).contains(&at[a])
+        })
+    }
+
+    /// Volume of particle `i` [m^D].
+    #[must_use]
+    pub fn volume(&self, i: usize) -> f64 {
+        self.mass[i] / (self.density[i] * self.width)
+    }
+
+    /// Shepard sum of the material, sum_j V_j W(|x - x_j|) [1].
+    #[must_use]
+    pub fn material_sum(&self, at: &[f64; D]) -> f64 {
+        let mut sum = 0.0;
+        self.cells
+            .for_each_within(at, self.kernel.support(), |j, _, r| {
+                sum += self.volume(j) * self.kernel.w(r);
+            });
+        sum
+    }
+
+    /// Shepard sums of solid behind and before the plane through `foot` with normal `up`, at `at` [1].
+    #[must_use]
+    pub fn solid_sums(&self, at: &[f64; D], foot: &[f64; D], up: &[f64; D]) -> (f64, f64) {
+        let volume = self.spacing.powi(D as i32);
+        let (mut behind, mut before) = (0.0, 0.0);
+        self.solid
+            .for_each_within(at, self.kernel.support(), |_, x, r| {
+                let weight = volume * self.kernel.w(r);
+                if super::component(&x, foot, up) < 0.0 {
+                    behind += weight;
+                } else {
+                    before += weight;
+                }
+            });
+        (behind, before)
+    }
+
+    /// Whether a place is inside a wall or gate.
+    ///
+    /// Walls are lattices of points, their faces half a spacing before the first row. In a corner of three walls
+    /// the sum over solid reaches 7/8 on the face itself, hence 0.9.
+    #[must_use]
+    pub fn is_covered(&self, at: &[f64; D]) -> bool {
+        let volume = self.spacing.powi(D as i32);
+        let (mut sum, mut nearest) = (0.0, f64::INFINITY);
+        self.solid
+            .for_each_within(at, self.kernel.support(), |_, _, r| {
+                sum += volume * self.kernel.w(r);
+                nearest = f64::min(nearest, r);
+            });
+        sum > 0.9 || nearest < 0.45 * self.spacing
+    }
+}
+
+#[cfg(test)]
+pub(super) mod bed {
+    //! Level beds of known height for the gauges' closed-form tests.
+
+    use super::*;
+
+    /// A level bed on a wall four rows deep, axis 1 upwards, periodic along the others.
+    pub(in crate::gauge) struct Bed<const D: usize> {
+        pub(in crate::gauge) spacing: f64,
+        ratio: f64,
+        rows: usize,
+        columns: usize,
+        position: Vec<[f64; D]>,
+        solid: Vec<[f64; D]>,
+        periodic: bool,
+    }
+
+    impl<const D: usize> Bed<D> {
+        /// `rows` rows at h/dp `ratio`, moved at random by up to `jitter` dp along each axis.
+        pub(in crate::gauge) fn new(ratio: f64, rows: usize, jitter: f64) -> Self {
+            let columns = if D == 2 { 40 } else { 14 };
+            let spacing = 0.01;
+            let mut noise = 0.0_f64;
+            let position = lattice(columns, 0, rows as i32, spacing, &mut |x| {
+                noise = (noise + 0.618_033_988_749_895 + 0.1 * x).fract();
+                x + jitter * spacing * (2.0 * noise - 1.0)
+            });
+            let solid = lattice(columns, -4, 0, spacing, &mut |x| x);
+            Self {
+                spacing,
+                ratio,
+                rows,
+                columns,
+                position,
+                solid,
+                periodic: true,
+            }
+        }
+
+        /// A bed with a wall at x = 0, twice as high.
+        pub(in crate::gauge) fn with_side_wall(ratio: f64, rows: usize) -> Self {
+            let mut bed = Self::new(ratio, rows, 0.0);
+            bed.periodic = false;
+            let wall: Vec<[f64; D]> = lattice(4, -4, 2 * rows as i32, bed.spacing, &mut |x| x);
+            bed.solid.extend(wall.into_iter().map(|mut x| {
+                x[0] -= 4.0 * bed.spacing;
+                x
+            }));
+            bed
+        }
+
+        /// Only the particles that satisfy `predicate`.
+        pub(in crate::gauge) fn keep(mut self, predicate: impl Fn(&[f64; D]) -> bool) -> Self {
+            self.position.retain(predicate);
+            self
+        }
+
+        pub(in crate::gauge) fn height(&self) -> f64 {
+            self.rows as f64 * self.spacing
+        }
+
+        pub(in crate::gauge) fn length(&self) -> f64 {
+            self.columns as f64 * self.spacing
+        }
+
+        /// Pressure of the bed at rest at height `y` [Pa].
+        pub(in crate::gauge) fn pressure_at(&self, y: f64) -> f64 {
+            1500.0 * 9.81 * (self.height() - y)
+        }
+
+        /// Shows the bed to a gauge.
+        pub(in crate::gauge) fn look<T>(&self, gauge: impl Fn(&View<D>) -> T) -> T {
+            let kernel = WendlandC2::new(self.ratio * self.spacing);
+            let length = self.length();
+            let periodic: [bool; D] = std::array::from_fn(|a| a != 1 && self.periodic);
+            let periods = periodic.map(|p| p.then_some((0.0, length)));
+            let width = if D == 2 { 0.3 } else { 1.0 };
+            let count = self.position.len();
+            let pressure: Vec<f64> = self
+                .position
+                .iter()
+                .map(|x| self.pressure_at(x[1]))
+                .collect();
+            let upper = std::array::from_fn(|a| if a == 1 { 1.0 } else { length });
+            let lower = std::array::from_fn(|a| if a == 1 { -0.05 } else { 0.0 });
+            gauge(&View {
+                position: &self.position,
+                mass: &vec![1500.0 * width * self.spacing.powi(D as i32); count],
+                density: &vec![1500.0; count],
+                pressure: &pressure,
+                cells: &CellGrid::build(&self.position, kernel.support(), &periods),
+                solid: &CellGrid::build(&self.solid, kernel.support(), &periods),
+                spacing: self.spacing,
+                kernel,
+                width,
+                lower,
+                upper,
+                periodic,
+            })
+        }
+    }
+
+    /// Cell centres of `columns` columns along all axes but 1, rows `from` to `to` along axis 1.
+    fn lattice<const D: usize>(
+        columns: usize,
+        from: i32,
+        to: i32,
+        spacing: f64,
+        place: &mut dyn FnMut(f64) -> f64,
+    ) -> Vec<[f64; D]> {
+        let depth = if D == 2 { 1 } else { columns };
+        let mut points = Vec::new();
+        for z in 0..depth {
+            for y in from..to {
+                for x in 0..columns {
+                    let cell = [x as f64, f64::from(y), z as f64];
+                    points.push(std::array::from_fn(|a| place((cell[a] + 0.5) * spacing)));
+                }
+            }
+        }
+        points
+    }
+}
