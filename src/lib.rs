@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod component;
+pub mod fmi;
 pub mod gauge;
 pub mod material;
 pub mod scene;

@@ -1,0 +1,108 @@
+//! Finds the shared library that goes into FMUs, or builds it in a source tree.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::Error;
+
+/// File name of the shared library.
+pub const FILE_NAME: &str = "libsandgate_fmu.so";
+/// What builds it.
+pub const BUILD_COMMAND: &str = "cargo build --release -p sandgate-fmu";
+
+/// The shared library: `explicit` if given; in a source tree what a build there gives; else the file beside the program.
+///
+/// The build comes before the file beside the program, so that a library of yesterday's sources is never packed.
+///
+/// # Errors
+/// [`Error::Library`] names what was looked for and the command that builds it.
+pub fn locate(explicit: Option<&Path>) -> Result<PathBuf, Error> {
+    if let Some(path) = explicit {
+        return if path.is_file() {
+            Ok(path.to_path_buf())
+        } else {
+            Err(Error::Library(format!(
+                "{} is not a file; give the {FILE_NAME} that `{BUILD_COMMAND}` makes, or leave it out",
+                path.display()
+            )))
+        };
+    }
+    let program = std::env::current_exe()
+        .map_err(|e| Error::Library(format!("cannot tell where this program is: {e}")))?;
+    if let Some((root, target)) = source_tree(&program) {
+        return build(&root, &target);
+    }
+    let beside = program.with_file_name(FILE_NAME);
+    if beside.is_file() {
+        return Ok(beside);
+    }
+    Err(Error::Library(format!(
+        "no {FILE_NAME} beside {}; build it with `{BUILD_COMMAND}` in Sandgate's source tree and give its path",
+        program.display()
+    )))
+}
+
+/// Builds the library of the source tree at `root` into `target`.
+///
+/// # Errors
+/// [`Error::Library`] with what cargo printed.
+pub fn build(root: &Path, target: &Path) -> Result<PathBuf, Error> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["build", "--release", "-p", "sandgate-fmu", "--target-dir"])
+        .arg(target)
+        .current_dir(root)
+        .output()
+        .map_err(|e| {
+            Error::Library(format!(
+                "cannot start cargo ({e}); run `{BUILD_COMMAND}` yourself and give the library's path"
+            ))
+        })?;
+    let library = target.join("release").join(FILE_NAME);
+    if output.status.success() && library.is_file() {
+        return Ok(library);
+    }
+    Err(Error::Library(format!(
+        "`{BUILD_COMMAND}` in {} failed ({}):\n{}",
+        root.display(),
+        output.status,
+        String::from_utf8_lossy(&output.stderr)
+    )))
+}
+
+/// The source tree and target folder a program was built in: ROOT/target/PROFILE/program.
+fn source_tree(program: &Path) -> Option<(PathBuf, PathBuf)> {
+    let target = program
+        .ancestors()
+        .find(|folder| folder.join("CACHEDIR.TAG").is_file())?;
+    let root = target.parent()?;
+    let ours = root.join("fmu/Cargo.toml").is_file() && root.join("Cargo.toml").is_file();
+    ours.then(|| (root.to_path_buf(), target.to_path_buf()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_in_a_target_folder_knows_its_source_tree() {
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        let root = folder.path();
+        let target = root.join("target");
+        let program = target.join("release/deps/sandgate");
+        for file in ["Cargo.toml", "fmu/Cargo.toml", "target/CACHEDIR.TAG"] {
+            assert_eq!(source_tree(&program), None);
+            let file = root.join(file);
+            std::fs::create_dir_all(file.parent().expect("it has one")).expect("writable");
+            std::fs::write(file, "").expect("writable");
+        }
+        assert_eq!(source_tree(&program), Some((root.to_path_buf(), target)));
+    }
+
+    #[test]
+    fn a_library_that_is_not_there_is_named() {
+        let error = locate(Some(Path::new("nowhere.so"))).expect_err("not there");
+        assert!(error.to_string().contains("nowhere.so is not a file"));
+        assert!(error.to_string().contains(BUILD_COMMAND));
+    }
+}

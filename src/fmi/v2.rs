@@ -1,0 +1,113 @@
+//! The FMI 2.0 document: scalars only, model structure by place in the list.
+
+use super::FmiVersion;
+use super::description::{
+    Enumeration, VALIDITY, enumeration, head, identifier, is_initial_unknown, is_output,
+    variable_head, variable_value, write_experiment, write_log_categories, write_units,
+};
+use super::xml::{Attributes, Xml};
+use crate::component::{ValueKind, Variable, VariableTable};
+use crate::scene::Scene;
+
+pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: &str) {
+    // FMI 2 has no arrays: their elements are rows of their own.
+    let rows: Vec<&Variable> = table
+        .rows()
+        .iter()
+        .filter(|row| row.shape.is_empty())
+        .collect();
+    xml.begin(
+        "fmiModelDescription",
+        &head(scene, FmiVersion::V2, ("guid", token)),
+    );
+    xml.leaf("CoSimulation", &capabilities(scene));
+    write_units(xml, table);
+    if rows.iter().any(|row| enumeration(row).is_some()) {
+        xml.begin("TypeDefinitions", &vec![]);
+        write_type(xml, &VALIDITY);
+        xml.end();
+    }
+    write_log_categories(xml);
+    write_experiment(xml, scene);
+    xml.begin("ModelVariables", &vec![]);
+    for row in &rows {
+        xml.begin("ScalarVariable", &variable_head(row));
+        let element = match row.kind {
+            ValueKind::Real => "Real",
+            ValueKind::Integer if enumeration(row).is_some() => "Enumeration",
+            ValueKind::Integer => "Integer",
+            ValueKind::Boolean => "Boolean",
+        };
+        xml.leaf(element, &variable_value(row));
+        xml.end();
+    }
+    xml.end();
+    write_structure(xml, &rows);
+    xml.end();
+}
+
+fn capabilities(scene: &Scene) -> Attributes {
+    let yes = || "true".to_owned();
+    vec![
+        ("modelIdentifier", identifier(scene)),
+        ("canHandleVariableCommunicationStepSize", yes()),
+        ("canNotUseMemoryManagementFunctions", yes()),
+        ("canGetAndSetFMUstate", yes()),
+        ("canSerializeFMUstate", yes()),
+    ]
+}
+
+fn write_type(xml: &mut Xml, enumeration: &Enumeration) {
+    xml.begin(
+        "SimpleType",
+        &vec![
+            ("name", enumeration.name.to_owned()),
+            ("description", enumeration.description.to_owned()),
+        ],
+    );
+    xml.begin("Enumeration", &vec![]);
+    for (name, value, description) in enumeration.items {
+        xml.leaf(
+            "Item",
+            &vec![
+                ("name", name.to_owned()),
+                ("value", value.to_string()),
+                ("description", description.to_owned()),
+            ],
+        );
+    }
+    xml.end();
+    xml.end();
+}
+
+/// Outputs depend on no input at the same instant: they are sampled at the end of a step.
+fn write_structure(xml: &mut Xml, rows: &[&Variable]) {
+    xml.begin("ModelStructure", &vec![]);
+    let independent = ("dependencies", String::new());
+    write_unknowns(xml, "Outputs", rows, is_output, Some(independent));
+    write_unknowns(xml, "InitialUnknowns", rows, is_initial_unknown, None);
+    xml.end();
+}
+
+fn write_unknowns(
+    xml: &mut Xml,
+    list: &'static str,
+    rows: &[&Variable],
+    wanted: fn(&Variable) -> bool,
+    dependencies: Option<(&'static str, String)>,
+) {
+    let mut places = (1_usize..)
+        .zip(rows)
+        .filter(|(_, row)| wanted(row))
+        .peekable();
+    if places.peek().is_none() {
+        return;
+    }
+    xml.begin(list, &vec![]);
+    for (place, _) in places {
+        let mut unknown = vec![("index", place.to_string())];
+        unknown.extend(dependencies.clone());
+        xml.leaf("Unknown", &unknown);
+    }
+    xml.end();
+}

@@ -1,0 +1,105 @@
+//! The FMI 3.0 document: arrays and their scalar elements, model structure by value reference.
+
+use super::FmiVersion;
+use super::description::{
+    Enumeration, VALIDITY, enumeration, head, identifier, is_initial_unknown, is_output,
+    variable_head, variable_value, write_experiment, write_log_categories, write_units,
+};
+use super::xml::{Attributes, Xml};
+use crate::component::{ValueKind, Variable, VariableTable};
+use crate::scene::Scene;
+
+pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: &str) {
+    xml.begin(
+        "fmiModelDescription",
+        &head(scene, FmiVersion::V3, ("instantiationToken", token)),
+    );
+    xml.leaf("CoSimulation", &capabilities(scene));
+    write_units(xml, table);
+    if table.rows().iter().any(|row| enumeration(row).is_some()) {
+        xml.begin("TypeDefinitions", &vec![]);
+        write_type(xml, &VALIDITY);
+        xml.end();
+    }
+    write_log_categories(xml);
+    write_experiment(xml, scene);
+    xml.begin("ModelVariables", &vec![]);
+    for row in table.rows() {
+        write_variable(xml, row);
+    }
+    xml.end();
+    write_structure(xml, table);
+    xml.end();
+}
+
+fn capabilities(scene: &Scene) -> Attributes {
+    let yes = || "true".to_owned();
+    vec![
+        ("modelIdentifier", identifier(scene)),
+        ("canGetAndSetFMUState", yes()),
+        ("canSerializeFMUState", yes()),
+        ("canHandleVariableCommunicationStepSize", yes()),
+    ]
+}
+
+fn write_type(xml: &mut Xml, enumeration: &Enumeration) {
+    xml.begin(
+        "EnumerationType",
+        &vec![
+            ("name", enumeration.name.to_owned()),
+            ("description", enumeration.description.to_owned()),
+        ],
+    );
+    for (name, value, description) in enumeration.items {
+        xml.leaf(
+            "Item",
+            &vec![
+                ("name", name.to_owned()),
+                ("value", value.to_string()),
+                ("description", description.to_owned()),
+            ],
+        );
+    }
+    xml.end();
+}
+
+fn write_variable(xml: &mut Xml, row: &Variable) {
+    let element = match row.kind {
+        ValueKind::Real => "Float64",
+        ValueKind::Integer if enumeration(row).is_some() => "Enumeration",
+        ValueKind::Integer => "Int64",
+        ValueKind::Boolean => "Boolean",
+    };
+    let mut attributes = variable_head(row);
+    attributes.extend(variable_value(row));
+    if row.shape.is_empty() {
+        xml.leaf(element, &attributes);
+        return;
+    }
+    xml.begin(element, &attributes);
+    for extent in &row.shape {
+        xml.leaf("Dimension", &vec![("start", extent.to_string())]);
+    }
+    xml.end();
+}
+
+/// Outputs depend on no input at the same instant: they are sampled at the end of a step.
+fn write_structure(xml: &mut Xml, table: &VariableTable) {
+    xml.begin("ModelStructure", &vec![]);
+    for row in table.rows().iter().filter(|row| is_output(row)) {
+        xml.leaf(
+            "Output",
+            &vec![
+                ("valueReference", row.reference.to_string()),
+                ("dependencies", String::new()),
+            ],
+        );
+    }
+    for row in table.rows().iter().filter(|row| is_initial_unknown(row)) {
+        xml.leaf(
+            "InitialUnknown",
+            &vec![("valueReference", row.reference.to_string())],
+        );
+    }
+    xml.end();
+}
