@@ -9,3 +9,5 @@ pub mod scene;
 pub mod shape;
 pub mod solver;
 pub mod state;
+#[cfg(any(feature = "record", feature = "bus"))]
+pub mod wire;

@@ -1,0 +1,261 @@
+//! Component → messages: outputs, figures of a step, particles. Pure: nothing is kept but the plan of which variables
+//! are outputs.
+
+use super::foxglove::{
+    FrameTransform, NumericType, PackedElementField, PointCloud, Pose, Quaternion, Vector3,
+};
+use super::messages::{Gauge, MassLedger, StepStats, Validity};
+use crate::component::{self, Causality, Component, StepReport, ValueReference, VariableTable};
+use crate::solver::StepBound;
+use prost_types::Timestamp;
+
+/// The frame of all positions.
+pub const WORLD: &str = "world";
+
+/// Simulated time as whole nanoseconds, the way keys, `log_time` and messages have it; times before 0 give 0.
+#[must_use]
+pub fn nanoseconds(time: f64) -> u64 {
+    // `as` saturates: negative and NaN give 0.
+    (time * 1e9).round() as u64
+}
+
+/// Simulated time for viewers.
+#[must_use]
+pub fn timestamp(time: f64) -> Timestamp {
+    let total = (time * 1e9).round() as i64;
+    Timestamp {
+        seconds: total.div_euclid(1_000_000_000),
+        nanos: total.rem_euclid(1_000_000_000) as i32,
+    }
+}
+
+/// One output of the table: what [`Gauge`] messages are made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Handle of the values.
+    pub reference: ValueReference,
+    /// Name in the table.
+    pub name: String,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Number of values.
+    pub len: usize,
+    /// Handle of the flag that says whether it is a measurement.
+    pub validity: Option<ValueReference>,
+}
+
+/// All outputs in order of reference: arrays whole (no element rows), validity flags with their gauge.
+#[must_use]
+pub fn outputs(table: &VariableTable) -> Vec<Output> {
+    table
+        .rows()
+        .iter()
+        .filter(|v| v.causality == Causality::Output && v.element_of.is_none())
+        .filter(|v| !v.name.ends_with(".validity"))
+        .map(|v| Output {
+            reference: v.reference,
+            name: v.name.clone(),
+            unit: v.unit,
+            len: v.len(),
+            validity: v
+                .name
+                .rsplit_once('.')
+                .and_then(|(device, _)| table.by_name(&format!("{device}.validity")))
+                .map(|flag| flag.reference),
+        })
+        .collect()
+}
+
+/// The message of one output as the component stands.
+///
+/// # Errors
+/// Those of [`Component::get`]: the output is of another component's table.
+pub fn gauge(
+    component: &Component,
+    output: &Output,
+    step: u64,
+    sequence: u64,
+) -> Result<Gauge, component::Error> {
+    let mut values = vec![0.0; output.len];
+    component.get(&[output.reference], &mut values)?;
+    let mut flag = [0.0];
+    if let Some(validity) = output.validity {
+        component.get(&[validity], &mut flag)?;
+    }
+    Ok(Gauge {
+        timestamp: Some(timestamp(component.time())),
+        time: component.time(),
+        step,
+        sequence,
+        name: output.name.clone(),
+        unit: output.unit.to_owned(),
+        values,
+        validity: Validity::try_from(flag[0] as i32).unwrap_or(Validity::Blocked) as i32,
+    })
+}
+
+/// Figures of the solver as the component stands; `report` of the step that led here, if one did.
+#[must_use]
+pub fn step_stats(component: &Component, report: Option<&StepReport>, sequence: u64) -> StepStats {
+    let figures = component.statistics();
+    let ledger = component.ledger();
+    StepStats {
+        timestamp: Some(timestamp(component.time())),
+        time: component.time(),
+        step: figures.communication_steps,
+        sequence,
+        substeps: report.map_or(0, |r| r.substeps),
+        smallest_step: report.map_or(0.0, |r| r.smallest_step),
+        bound_by: report.map_or("", |r| bound_name(r.bound_by)).to_owned(),
+        iterations: report.map_or(0, |r| r.iterations),
+        particles: figures.particles,
+        step_size: figures.step_size,
+        kinetic_energy: figures.kinetic_energy,
+        max_speed: figures.max_speed,
+        share_dilute: figures.share_dilute,
+        total_substeps: figures.steps,
+        total_iterations: figures.iterations,
+        ledger: Some(MassLedger {
+            initial: ledger.initial,
+            inflow: ledger.inflow,
+            outflow: ledger.outflow,
+            present: ledger.present,
+        }),
+    }
+}
+
+fn bound_name(bound: StepBound) -> &'static str {
+    match bound {
+        StepBound::Acoustic => "acoustic",
+        StepBound::Motion => "motion",
+        StepBound::Viscous => "viscous",
+        StepBound::Communication => "communication",
+    }
+}
+
+/// Names of the packed fields of a particle, each f32, in order.
+pub const PARTICLE_FIELDS: [&str; 10] = [
+    "x",
+    "y",
+    "z",
+    "vx",
+    "vy",
+    "vz",
+    "pressure",
+    "inertial_number",
+    "phase",
+    "asleep",
+];
+
+/// All particles as they are now, ten f32 each ([`PARTICLE_FIELDS`]).
+#[must_use]
+pub fn point_cloud(component: &Component) -> PointCloud {
+    let view = component.particles();
+    let stride = 4 * PARTICLE_FIELDS.len();
+    let mut data = Vec::with_capacity(stride * view.position.len());
+    for i in 0..view.position.len() {
+        let [x, y, z] = view.position[i];
+        let [vx, vy, vz] = view.velocity[i];
+        let (phase, asleep) = (f32::from(view.phase[i]), f32::from(view.asleep[i]));
+        let numbers = [
+            x,
+            y,
+            z,
+            vx,
+            vy,
+            vz,
+            view.pressure[i],
+            view.inertial_number[i],
+            phase,
+            asleep,
+        ];
+        for number in numbers {
+            data.extend_from_slice(&number.to_le_bytes());
+        }
+    }
+    PointCloud {
+        timestamp: Some(timestamp(component.time())),
+        frame_id: WORLD.to_owned(),
+        pose: Some(pose([0.0; 3], IDENTITY)),
+        point_stride: stride as u32,
+        fields: PARTICLE_FIELDS
+            .iter()
+            .enumerate()
+            .map(|(i, name)| PackedElementField {
+                name: (*name).to_owned(),
+                offset: 4 * i as u32,
+                r#type: NumericType::Float32 as i32,
+            })
+            .collect(),
+        data,
+    }
+}
+
+/// Where each gate's frame is now: the plate moves from its closed place by its actual opening.
+///
+/// # Errors
+/// Those of [`Component::get`].
+pub fn gate_frames(component: &Component) -> Result<Vec<FrameTransform>, component::Error> {
+    let mut frames = Vec::new();
+    for gate in &component.scene().gates {
+        let name = format!("gate.{}.actual_opening", gate.name);
+        let mut opening = [gate.start];
+        if let Some(variable) = component.variables().by_name(&name) {
+            component.get(&[variable.reference], &mut opening)?;
+        }
+        let shift = |axis: usize| opening[0] * (gate.to[axis] - gate.from[axis]);
+        frames.push(FrameTransform {
+            timestamp: Some(timestamp(component.time())),
+            parent_frame_id: WORLD.to_owned(),
+            child_frame_id: format!("gate.{}", gate.name),
+            translation: Some(Vector3 {
+                x: shift(0),
+                y: shift(1),
+                z: shift(2),
+            }),
+            rotation: Some(IDENTITY),
+        });
+    }
+    Ok(frames)
+}
+
+/// No rotation.
+pub(super) const IDENTITY: Quaternion = Quaternion {
+    x: 0.0,
+    y: 0.0,
+    z: 0.0,
+    w: 1.0,
+};
+
+/// A pose.
+pub(super) fn pose([x, y, z]: [f64; 3], orientation: Quaternion) -> Pose {
+    Pose {
+        position: Some(Vector3 { x, y, z }),
+        orientation: Some(orientation),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_become_the_nearest_nanosecond() {
+        assert_eq!(nanoseconds(0.1 + 0.2), 300_000_000);
+        assert_eq!(nanoseconds(-1.0), 0);
+        assert_eq!(
+            timestamp(1.25),
+            Timestamp {
+                seconds: 1,
+                nanos: 250_000_000
+            }
+        );
+        assert_eq!(
+            timestamp(-0.25),
+            Timestamp {
+                seconds: -1,
+                nanos: 750_000_000
+            }
+        );
+    }
+}

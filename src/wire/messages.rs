@@ -1,0 +1,216 @@
+//! The project's own messages, package `sandgate`. Times are simulated time; `timestamp` is `time` rounded to
+//! nanoseconds for viewers, the exact value is the f64.
+//!
+//! Rules of change: a field's number and type never change, a removed number is never used again.
+
+messages! {
+    /// One output of the component at a communication point.
+    "sandgate.Gauge": pub struct Gauge {
+        /// Simulated time, rounded to nanoseconds.
+        #[prost(message, optional, tag = "1")]
+        pub timestamp: Option<prost_types::Timestamp>,
+        /// Simulated time [s].
+        #[prost(double, tag = "2")]
+        pub time: f64,
+        /// Communication steps done when it was read.
+        #[prost(uint64, tag = "3")]
+        pub step: u64,
+        /// Counts the messages of this output from 0: a gap means that messages were lost.
+        #[prost(uint64, tag = "4")]
+        pub sequence: u64,
+        /// Name in the table of variables: `gauge.weir.depth`.
+        #[prost(string, tag = "5")]
+        pub name: String,
+        /// SI unit, "1" if it has none.
+        #[prost(string, tag = "6")]
+        pub unit: String,
+        /// The value, or all values of an array in the table's order.
+        #[prost(double, repeated, tag = "7")]
+        pub values: Vec<f64>,
+        /// Whether the gauge could measure; outputs without such a flag are always valid.
+        #[prost(enumeration(Validity), tag = "8")]
+        pub validity: i32,
+    } with {
+        /// What a gauge's flag says; the numbers are those of the `.validity` variables.
+        "sandgate.Gauge.Validity": pub enum Validity {
+            /// The value is a measurement.
+            Valid = 0,
+            /// No material where it measures.
+            Empty = 1,
+            /// The place is outside the domain.
+            Outside = 2,
+            /// A wall or gate stands in the way.
+            Blocked = 3,
+        }
+    }
+
+    /// What drove the component, in the order in which it took effect: all that a later run needs to repeat this one
+    /// bit for bit.
+    "sandgate.Applied": pub struct Applied {
+        /// Simulated time at which it took effect, rounded to nanoseconds.
+        #[prost(message, optional, tag = "1")]
+        pub timestamp: Option<prost_types::Timestamp>,
+        /// Which call it was.
+        #[prost(enumeration(AppliedEvent), tag = "2")]
+        pub event: i32,
+        /// Number of the communication step that used these inputs, from 1; 0 for INITIALIZE.
+        #[prost(uint64, tag = "3")]
+        pub step: u64,
+        /// Bits of the f64 `t`: start of the step, or start time of INITIALIZE.
+        #[prost(fixed64, tag = "4")]
+        pub t_bits: u64,
+        /// Bits of the f64 `h`: length of the step; of INITIALIZE the stop time, NaN if it has none.
+        #[prost(fixed64, tag = "5")]
+        pub h_bits: u64,
+        /// `t` as a number, for plots [s].
+        #[prost(double, tag = "6")]
+        pub t: f64,
+        /// `h` as a number, for plots [s].
+        #[prost(double, tag = "7")]
+        pub h: f64,
+        /// Inputs set since the call before, in the order in which they were set.
+        #[prost(message, repeated, tag = "8")]
+        pub inputs: Vec<AppliedInput>,
+        /// Who made the call: "run", "fmi3", "c", or the name of a Zenoh client.
+        #[prost(string, tag = "9")]
+        pub source: String,
+    } with {
+        /// Calls that drive a component.
+        "sandgate.Applied.Event": pub enum AppliedEvent {
+            /// `do_step(t, h)`.
+            Step = 0,
+            /// `initialize(t, stop)`.
+            Initialize = 1,
+            /// `reset()`: back to start values.
+            Reset = 2,
+            /// `restore(...)`: back or forth to a saved state.
+            Restore = 3,
+        }
+    }
+
+    /// One variable that was set.
+    "sandgate.AppliedInput": pub struct AppliedInput {
+        /// Handle in the table of variables.
+        #[prost(uint32, tag = "1")]
+        pub reference: u32,
+        /// Name in the table of variables.
+        #[prost(string, tag = "2")]
+        pub name: String,
+        /// Bits of the f64 values, flat.
+        #[prost(fixed64, repeated, tag = "3")]
+        pub bits: Vec<u64>,
+        /// The same values as numbers, for plots; in the variable's unit.
+        #[prost(double, repeated, tag = "4")]
+        pub values: Vec<f64>,
+        /// Who set it.
+        #[prost(string, tag = "5")]
+        pub source: String,
+    }
+
+    /// A call of the component from outside, or the reply to one: Zenoh RPC, FMI, C or the program.
+    "sandgate.Command": pub struct Command {
+        /// Simulated time when it came, rounded to nanoseconds.
+        #[prost(message, optional, tag = "1")]
+        pub timestamp: Option<prost_types::Timestamp>,
+        /// Simulated time [s].
+        #[prost(double, tag = "2")]
+        pub time: f64,
+        /// Request or reply.
+        #[prost(enumeration(CommandKind), tag = "3")]
+        pub kind: i32,
+        /// Who was asked: "rpc", "fmi2", "fmi3", "c" or "cli".
+        #[prost(string, tag = "4")]
+        pub interface: String,
+        /// What is asked: `step`, `fmi3DoStep`, `sandgate_step`.
+        #[prost(string, tag = "5")]
+        pub verb: String,
+        /// The caller's identifier of the request, the same in the reply.
+        #[prost(string, tag = "6")]
+        pub request: String,
+        /// Who asks, if it said so.
+        #[prost(string, tag = "7")]
+        pub client: String,
+        /// Request or reply as JSON text, as it came or went.
+        #[prost(string, tag = "8")]
+        pub body: String,
+        /// Replies: "ok" or the error's code; empty in requests.
+        #[prost(string, tag = "9")]
+        pub status: String,
+    } with {
+        /// Which way a command goes.
+        "sandgate.Command.Kind": pub enum CommandKind {
+            /// To the component.
+            Request = 0,
+            /// From the component.
+            Reply = 1,
+        }
+    }
+
+    /// Figures of the solver after a communication step, with the account of mass.
+    "sandgate.StepStats": pub struct StepStats {
+        /// Simulated time, rounded to nanoseconds.
+        #[prost(message, optional, tag = "1")]
+        pub timestamp: Option<prost_types::Timestamp>,
+        /// Simulated time reached [s].
+        #[prost(double, tag = "2")]
+        pub time: f64,
+        /// Communication steps done.
+        #[prost(uint64, tag = "3")]
+        pub step: u64,
+        /// Counts these messages from 0.
+        #[prost(uint64, tag = "4")]
+        pub sequence: u64,
+        /// Internal steps of this communication step.
+        #[prost(uint32, tag = "5")]
+        pub substeps: u32,
+        /// Smallest of them [s].
+        #[prost(double, tag = "6")]
+        pub smallest_step: f64,
+        /// What bound it: "acoustic", "motion", "viscous", "communication"; empty before the first step.
+        #[prost(string, tag = "7")]
+        pub bound_by: String,
+        /// Iterations of the viscous solve, summed over the internal steps.
+        #[prost(uint32, tag = "8")]
+        pub iterations: u32,
+        /// Particles present.
+        #[prost(uint64, tag = "9")]
+        pub particles: u64,
+        /// Last internal step [s].
+        #[prost(double, tag = "10")]
+        pub step_size: f64,
+        /// Kinetic energy [J].
+        #[prost(double, tag = "11")]
+        pub kinetic_energy: f64,
+        /// Largest speed of a particle [m/s].
+        #[prost(double, tag = "12")]
+        pub max_speed: f64,
+        /// Share of the mass with inertial number above 0.3 [1].
+        #[prost(double, tag = "13")]
+        pub share_dilute: f64,
+        /// Internal steps since the start.
+        #[prost(uint64, tag = "14")]
+        pub total_substeps: u64,
+        /// Iterations since the start.
+        #[prost(uint64, tag = "15")]
+        pub total_iterations: u64,
+        /// Account of mass: exact in f64.
+        #[prost(message, optional, tag = "16")]
+        pub ledger: Option<MassLedger>,
+    }
+
+    /// Account of mass: initial + inflow - outflow = present, exactly.
+    "sandgate.MassLedger": pub struct MassLedger {
+        /// Mass at the start [kg].
+        #[prost(double, tag = "1")]
+        pub initial: f64,
+        /// Mass that came in since [kg].
+        #[prost(double, tag = "2")]
+        pub inflow: f64,
+        /// Mass that left since [kg].
+        #[prost(double, tag = "3")]
+        pub outflow: f64,
+        /// Mass present, summed over particles [kg].
+        #[prost(double, tag = "4")]
+        pub present: f64,
+    }
+}
