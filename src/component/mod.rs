@@ -5,6 +5,8 @@
 
 mod engine;
 mod error;
+mod sampling;
+mod snapshot;
 mod variables;
 
 pub use error::{Error, Severity};

@@ -22,37 +22,25 @@ pub struct Crossing<const D: usize> {
     mass: f64,
 }
 
-impl Crossing<2> {
-    /// The segment from `from` to `to` [m]; its right side is downstream.
-    #[must_use]
-    pub fn segment(from: [f64; 2], to: [f64; 2], period: [Option<f64>; 2]) -> Self {
-        let edge = [to[0] - from[0], to[1] - from[1]];
-        Self::new(from, &[edge], [edge[1], -edge[0]], period)
-    }
-}
-
-impl Crossing<3> {
-    /// The parallelogram with corner `from` and edges `to - from` and `span` [m]. Downstream is along
-    /// (to - from) x span: the right side of the planar segment when `span` points along z.
-    #[must_use]
-    pub fn parallelogram(
-        from: [f64; 3],
-        to: [f64; 3],
-        span: [f64; 3],
-        period: [Option<f64>; 3],
-    ) -> Self {
-        let u: [f64; 3] = std::array::from_fn(|a| to[a] - from[a]);
-        let normal = [
-            u[1] * span[2] - u[2] * span[1],
-            u[2] * span[0] - u[0] * span[2],
-            u[0] * span[1] - u[1] * span[0],
-        ];
-        Self::new(from, &[u, span], normal, period)
-    }
-}
-
 impl<const D: usize> Crossing<D> {
-    fn new(
+    /// The segment from `from` to `to` (planar), or the parallelogram with corner `from` and edges `to - from` and
+    /// `span` (space) [m]. Downstream is to the right of the segment; in space along (to - from) x span, which is
+    /// the same when `span` points along z. `period` holds the lengths of periodic axes [m].
+    #[must_use]
+    pub fn new(from: [f64; D], to: [f64; D], span: [f64; D], period: [Option<f64>; D]) -> Self {
+        let u: [f64; D] = std::array::from_fn(|a| to[a] - from[a]);
+        if D == 2 {
+            let normal = std::array::from_fn(|a| if a == 0 { u[1] } else { -u[0] });
+            return Self::with_edges(from, &[u], normal, period);
+        }
+        let normal = std::array::from_fn(|a| {
+            let (b, c) = ((a + 1) % D, (a + 2) % D);
+            u[b] * span[c] - u[c] * span[b]
+        });
+        Self::with_edges(from, &[u, span], normal, period)
+    }
+
+    fn with_edges(
         corner: [f64; D],
         edges: &[[f64; D]],
         normal: [f64; D],
@@ -73,6 +61,12 @@ impl<const D: usize> Crossing<D> {
             period,
             mass: 0.0,
         }
+    }
+
+    /// Centre of the section [m].
+    #[must_use]
+    pub fn centre(&self) -> [f64; D] {
+        self.centre
     }
 
     /// +1 if the path crosses from left to right, -1 from right to left, 0 if it does not cross.
@@ -155,7 +149,7 @@ mod tests {
     #[test]
     fn right_of_the_segment_is_downstream() {
         // Upwards along y: the right side is +x.
-        let section = Crossing::segment([0.0, 0.0], [0.0, 1.0], [None; 2]);
+        let section = Crossing::new([0.0, 0.0], [0.0, 1.0], [0.0; 2], [None; 2]);
         assert_eq!(section.count(&[-0.1, 0.5], &[0.1, 0.5]), 1);
         assert_eq!(section.count(&[0.1, 0.5], &[-0.1, 0.5]), -1);
         assert_eq!(section.count(&[-0.1, 1.5], &[0.1, 1.5]), 0);
@@ -166,7 +160,7 @@ mod tests {
 
     #[test]
     fn stopping_on_the_section_and_going_on_counts_once() {
-        let section = Crossing::segment([0.0, 0.0], [0.0, 1.0], [None; 2]);
+        let section = Crossing::new([0.0, 0.0], [0.0, 1.0], [0.0; 2], [None; 2]);
         let path = [[-0.1, 0.5], [0.0, 0.5], [0.1, 0.5]];
         assert_eq!(
             path.windows(2)
@@ -185,9 +179,9 @@ mod tests {
 
     #[test]
     fn two_sections_end_to_end_count_what_one_long_section_counts() {
-        let whole = Crossing::segment([0.3, 0.0], [0.5, 1.0], [None; 2]);
-        let lower = Crossing::segment([0.3, 0.0], [0.4, 0.5], [None; 2]);
-        let upper = Crossing::segment([0.4, 0.5], [0.5, 1.0], [None; 2]);
+        let whole = Crossing::new([0.3, 0.0], [0.5, 1.0], [0.0; 2], [None; 2]);
+        let lower = Crossing::new([0.3, 0.0], [0.4, 0.5], [0.0; 2], [None; 2]);
+        let upper = Crossing::new([0.4, 0.5], [0.5, 1.0], [0.0; 2], [None; 2]);
         for k in 0..1000 {
             let t = f64::from(k) * 0.618_033_988_75;
             let before = [t.fract(), (3.7 * t).fract()];
@@ -200,8 +194,7 @@ mod tests {
     #[test]
     fn parallelogram_in_space_with_slanted_edges() {
         // Span along z makes the planar rule: right of +y is +x.
-        let section =
-            Crossing::parallelogram([0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.5, 1.0], [None; 3]);
+        let section = Crossing::new([0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.5, 1.0], [None; 3]);
         assert_eq!(section.count(&[-0.1, 0.3, 0.1], &[0.1, 0.3, 0.1]), 1);
         // y = 0.2 at z = 0.9 is below the slanted edge (0.45), y = 1.2 is inside.
         assert_eq!(section.count(&[-0.1, 0.2, 0.9], &[0.1, 0.2, 0.9]), 0);
@@ -211,7 +204,8 @@ mod tests {
     #[test]
     fn every_round_through_a_periodic_channel_counts_once() {
         for place in [0.0, 0.37, 1.0] {
-            let mut section = Crossing::segment([place, 0.0], [place, 1.0], [Some(1.0), None]);
+            let mut section =
+                Crossing::new([place, 0.0], [place, 1.0], [0.0; 2], [Some(1.0), None]);
             let mut x = 0.2_f64;
             for _ in 0..700 {
                 let next = (x + 0.01).rem_euclid(1.0);
@@ -224,7 +218,7 @@ mod tests {
 
     #[test]
     fn section_across_a_whole_period_has_no_ends() {
-        let section = Crossing::segment([0.0, 0.5], [1.0, 0.5], [Some(1.0), None]);
+        let section = Crossing::new([0.0, 0.5], [1.0, 0.5], [0.0; 2], [Some(1.0), None]);
         for x in [0.0, 1e-17, 0.5, 1.0 - 1e-16, 1.0] {
             // Right of +x is down.
             assert_eq!(section.count(&[x, 0.6], &[x + 0.01, 0.4]), 1, "at {x}");

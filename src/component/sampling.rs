@@ -1,0 +1,158 @@
+//! Gauges of a scene, made for one dimension: what the engine samples once per communication step.
+//!
+//! Field gauges read particles through `gauge`; discharge gauges count crossings at every internal step; force
+//! gauges read the impulses that devices gathered. Order of readings: the scene's.
+
+use super::engine::Devices;
+use crate::gauge::{self, Crossing, DepthLine, Field, Front, PressureProbe, Profile, Reading};
+use crate::gauge::{Validity, View};
+use crate::scene::{ForceTarget, Gauge, GaugeKind, Point, Scene};
+
+/// All gauges of a scene in D dimensions.
+#[derive(Clone, Debug)]
+pub(crate) struct Sampler<const D: usize> {
+    gauges: Vec<Kind<D>>,
+}
+
+#[derive(Clone, Debug)]
+enum Kind<const D: usize> {
+    Field(Field<D>),
+    Discharge {
+        section: Crossing<D>,
+        /// Mass that had crossed when the communication step began [kg].
+        before: f64,
+    },
+    Force(ForceTarget),
+}
+
+impl<const D: usize> Sampler<D> {
+    /// Gauges of `scene`, whose dimension is D.
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let period = std::array::from_fn(|a| {
+            let domain = &scene.domain;
+            domain.periodic[a].then_some(domain.upper[a] - domain.lower[a])
+        });
+        let gauges = scene.gauges.iter().map(|g| kind(g, &period)).collect();
+        Self { gauges }
+    }
+
+    /// A communication step begins.
+    pub(crate) fn begin_step(&mut self) {
+        for gauge in &mut self.gauges {
+            if let Kind::Discharge { section, before } = gauge {
+                *before = section.mass();
+            }
+        }
+    }
+
+    /// Whether any gauge wants [`Sampler::count`] to be called.
+    pub(crate) fn counts(&self) -> bool {
+        self.gauges
+            .iter()
+            .any(|g| matches!(g, Kind::Discharge { .. }))
+    }
+
+    /// Counts the particles that crossed sections in one internal step: the same particles in the same order in
+    /// all three slices, positions [m] and masses [kg].
+    pub(crate) fn count(&mut self, before: &[[f64; D]], after: &[[f64; D]], mass: &[f64]) {
+        for gauge in &mut self.gauges {
+            if let Kind::Discharge { section, .. } = gauge {
+                for ((from, to), mass) in before.iter().zip(after).zip(mass) {
+                    section.add(from, to, *mass);
+                }
+            }
+        }
+    }
+
+    /// Mass that crossed each discharge gauge since the start [kg]: part of the saved state.
+    pub(crate) fn crossed(&self) -> Vec<f64> {
+        let mass = |g: &Kind<D>| match g {
+            Kind::Discharge { section, .. } => Some(section.mass()),
+            _ => None,
+        };
+        self.gauges.iter().filter_map(mass).collect()
+    }
+
+    /// Takes over what [`Sampler::crossed`] gave; false (and nothing changed) if their number is another.
+    pub(crate) fn set_crossed(&mut self, mass: &[f64]) -> bool {
+        if mass.len() != self.crossed().len() {
+            return false;
+        }
+        let sections = self.gauges.iter_mut().filter_map(|g| match g {
+            Kind::Discharge { section, before } => Some((section, before)),
+            _ => None,
+        });
+        for ((section, before), mass) in sections.zip(mass) {
+            section.set_mass(*mass);
+            *before = *mass;
+        }
+        true
+    }
+
+    /// Readings of all gauges; `step` is the length of the last communication step [s], 0 before the first.
+    pub(crate) fn sample(&self, view: &View<D>, devices: &Devices, step: f64) -> Vec<Reading> {
+        let over_step = |value: f64| if step > 0.0 { value / step } else { 0.0 };
+        let read = |gauge: &Kind<D>| match gauge {
+            Kind::Field(field) => gauge::sample(field, view),
+            Kind::Discharge { section, .. } if view.is_outside(&section.centre()) => {
+                Reading::none(2, Validity::Outside)
+            }
+            Kind::Discharge { section, before } => {
+                let mass = section.mass();
+                Reading::valid(vec![over_step(mass - before), mass])
+            }
+            Kind::Force(target) => {
+                let impulse = match target {
+                    ForceTarget::Wall(i) => devices.wall_impulse[*i],
+                    ForceTarget::Gate(i) => devices.gates[*i].impulse,
+                };
+                Reading::valid(impulse[..D].iter().map(|i| over_step(*i)).collect())
+            }
+        };
+        self.gauges.iter().map(read).collect()
+    }
+}
+
+/// The gauge of one row of the scene.
+fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
+    match &gauge.kind {
+        GaugeKind::Depth { foot, up, length } => Kind::Field(Field::Depth(DepthLine {
+            foot: flat(foot),
+            up: flat(up),
+            length: *length,
+        })),
+        GaugeKind::Profile {
+            from,
+            to,
+            count,
+            up,
+            length,
+        } => Kind::Field(Field::Profile(Profile {
+            from: flat(from),
+            to: flat(to),
+            count: *count,
+            up: flat(up),
+            length: *length,
+        })),
+        GaugeKind::Discharge { from, to, span } => Kind::Discharge {
+            section: Crossing::new(flat(from), flat(to), flat(span), *period),
+            before: 0.0,
+        },
+        GaugeKind::Force { on } => Kind::Force(*on),
+        GaugeKind::Pressure { at } => Kind::Field(Field::Pressure(PressureProbe { at: flat(at) })),
+        GaugeKind::Front {
+            origin,
+            direction,
+            up,
+        } => Kind::Field(Field::Front(Front {
+            origin: flat(origin),
+            direction: flat(direction),
+            up: flat(up),
+        })),
+    }
+}
+
+/// The first D components.
+fn flat<const D: usize>(point: &Point) -> [f64; D] {
+    std::array::from_fn(|a| point[a])
+}
