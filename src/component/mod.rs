@@ -1,23 +1,40 @@
 //! The one interface: what the program, FMI, the C ABI and Zenoh all step.
 //!
 //! Adapters contain no physics, no lifecycle rule and no list of variables: the lifecycle stands in `lifecycle`,
-//! the variables in `variables`, the map from errors to numbers in `status`.
+//! the variables in `variables`, the map from errors to numbers in `status`. What is advanced stands behind
+//! `engine`; what a saved state looks like in `snapshot`.
+//!
+//! Inputs are held over a step (unless [`Component::set_input_derivatives`] gave a slope); outputs are sampled once
+//! at its end. A refused call changes nothing. A failed step leaves time and outputs at the last good step and
+//! the component in [`Mode::Failed`].
 
+mod access;
+mod advance;
 mod engine;
 mod error;
+mod lifecycle;
+mod outputs;
+mod reports;
 mod sampling;
 mod snapshot;
+mod status;
 mod variables;
 
 pub use error::{Error, Severity};
+pub use reports::{MassLedger, ParticleView, Statistics, StepReport};
+pub use status::Status;
 pub use variables::{
     Causality, Start, ValueKind, ValueReference, Variability, Variable, VariableTable,
+    variables_markdown,
 };
 
 use crate::scene::Scene;
+use engine::{Engine, Inputs, Ramp};
+use lifecycle::Call;
+use outputs::FlowMass;
 
 /// Where a component is in its life. `lifecycle` holds the table of which call is allowed when.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Mode {
     /// Built; parameters may be set.
     Instantiated,
@@ -31,68 +48,29 @@ pub enum Mode {
     Failed,
 }
 
-/// What a step did.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepReport {
-    /// Time reached: t + h, bit for bit [s].
-    pub time: f64,
-    /// Internal steps taken.
-    pub substeps: u32,
-    /// Smallest internal step [s].
-    pub smallest_step: f64,
-    /// What bound it.
-    pub bound_by: crate::solver::StepBound,
-    /// Iterations of the viscous solve, summed over internal steps.
-    pub iterations: u32,
-}
-
-/// Exact account of material: initial + inflow - outflow = present, in f64, at every time.
-///
-/// Particle masses are multiples of a power of two, so that every sum is exact whatever its order.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct MassLedger {
-    /// Mass at the start [kg].
-    pub initial: f64,
-    /// Mass that came in since [kg].
-    pub inflow: f64,
-    /// Mass that left since [kg].
-    pub outflow: f64,
-    /// Mass present, summed over particles [kg].
-    pub present: f64,
-}
-
-impl MassLedger {
-    /// initial + inflow - outflow - present [kg]: exactly 0.
-    #[must_use]
-    pub fn error(&self) -> f64 {
-        self.initial + self.inflow - self.outflow - self.present
-    }
-}
-
-/// Figures of the solver that go to logs and summaries.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Statistics {
-    /// Communication steps done.
-    pub communication_steps: u64,
-    /// Internal steps done.
-    pub steps: u64,
-    /// Iterations of viscous solves, in all.
-    pub iterations: u64,
-    /// Particles present.
-    pub particles: u64,
-    /// Last internal step [s].
-    pub step_size: f64,
-    /// Kinetic energy [J].
-    pub kinetic_energy: f64,
-    /// Largest particle speed [m/s].
-    pub max_speed: f64,
-    /// Share of mass with I > 0.3 [1]: outside the dense regime.
-    pub share_dilute: f64,
-}
-
 /// A steppable granular-flow unit.
 pub struct Component {
     scene: Scene,
+    table: VariableTable,
+    fingerprint: [u8; 32],
+    engine: Box<dyn Engine>,
+    /// Threads of the sweeps: no part of the state, results do not depend on it.
+    threads: usize,
+    life: Life,
+}
+
+/// The state beside the engine's: what save and restore carry with it.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Life {
+    mode: Mode,
+    /// Simulated time [s].
+    time: f64,
+    /// No step may end later [s].
+    stop: Option<f64>,
+    communication_steps: u64,
+    inputs: Inputs,
+    /// Flat output values as of the last good step; see `outputs`.
+    outputs: Vec<f64>,
 }
 
 impl Component {
@@ -101,9 +79,45 @@ impl Component {
     /// # Errors
     /// [`Error::Setup`] if the scene cannot be built.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let table = VariableTable::of(scene);
+        let threads = 1;
+        let (engine, life) = Self::start(scene, &table, threads)?;
+        let fingerprint = snapshot::fingerprint(&scene.source);
         Ok(Self {
             scene: scene.clone(),
+            table,
+            fingerprint,
+            engine,
+            threads,
+            life,
         })
+    }
+
+    /// Engine and life at the start of a scene.
+    fn start(
+        scene: &Scene,
+        table: &VariableTable,
+        threads: usize,
+    ) -> Result<(Box<dyn Engine>, Life), Error> {
+        let mut engine = engine::build(scene)?;
+        engine.set_threads(threads);
+        let held = |value: f64| Ramp { value, slope: 0.0 };
+        let inputs = Inputs {
+            gate_opening: scene.gates.iter().map(|g| held(g.start)).collect(),
+            inflow_rate: scene.inflows.iter().map(|i| held(i.rate)).collect(),
+        };
+        let before = FlowMass::now(engine.devices());
+        let outputs =
+            outputs::sample(table, engine.as_ref(), &before, 0.0).map_err(Error::Setup)?;
+        let life = Life {
+            mode: Mode::Instantiated,
+            time: 0.0,
+            stop: None,
+            communication_steps: 0,
+            inputs,
+            outputs,
+        };
+        Ok((engine, life))
     }
 
     /// The scene it was built from.
@@ -115,19 +129,25 @@ impl Component {
     /// The one table of variables.
     #[must_use]
     pub fn variables(&self) -> &VariableTable {
-        todo!()
+        &self.table
     }
 
     /// Where it is in its life.
     #[must_use]
     pub fn mode(&self) -> Mode {
-        todo!()
+        self.life.mode
     }
 
-    /// Simulated time [s].
+    /// Simulated time [s]: that of the last good step.
     #[must_use]
     pub fn time(&self) -> f64 {
-        todo!()
+        self.life.time
+    }
+
+    /// No step may end later than this [s], if an orchestrator said so.
+    #[must_use]
+    pub fn stop_time(&self) -> Option<f64> {
+        self.life.stop
     }
 
     /// Instantiated -> Initialization. `stop`: no step may end later [s].
@@ -135,16 +155,41 @@ impl Component {
     /// # Errors
     /// [`Error::NotAllowedNow`], [`Error::BadArgument`] for times that are not finite or in the wrong order.
     pub fn enter_initialization(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
-        let _ = (start, stop);
-        todo!()
+        lifecycle::check(Call::EnterInitialization, self.life.mode)?;
+        let refuse = |what: &str, found: f64, allowed: String| {
+            Err(Error::BadArgument {
+                call: "enter_initialization",
+                what: what.to_owned(),
+                found: format!("{found} s"),
+                allowed,
+            })
+        };
+        if !start.is_finite() {
+            return refuse("start time", start, "a finite time".to_owned());
+        }
+        if let Some(stop) = stop
+            && !(stop.is_finite() && stop > start)
+        {
+            return refuse(
+                "stop time",
+                stop,
+                format!("a finite time after {start} s, the start"),
+            );
+        }
+        self.life.mode = Mode::Initialization;
+        self.life.time = start;
+        self.life.stop = stop;
+        Ok(())
     }
 
-    /// Initialization -> Stepping: first gauges are sampled.
+    /// Initialization -> Stepping. Outputs are those of the start.
     ///
     /// # Errors
     /// [`Error::NotAllowedNow`].
     pub fn exit_initialization(&mut self) -> Result<(), Error> {
-        todo!()
+        lifecycle::check(Call::ExitInitialization, self.life.mode)?;
+        self.life.mode = Mode::Stepping;
+        Ok(())
     }
 
     /// `enter_initialization` and `exit_initialization` in one.
@@ -156,41 +201,14 @@ impl Component {
         self.exit_initialization()
     }
 
-    /// Sets variables, all or none. `values` holds the flat values of all references, one after the other.
-    ///
-    /// # Errors
-    /// Unknown reference, wrong length, not finite, out of range, not settable (in this mode): names the variable,
-    /// what was found and what is allowed. Nothing is changed then.
-    pub fn set(&mut self, references: &[ValueReference], values: &[f64]) -> Result<(), Error> {
-        let _ = (references, values);
-        todo!()
-    }
-
-    /// Reads variables into `values` (flat, as in [`Component::set`]). Pure: gauges are sampled once a step, not here.
-    ///
-    /// # Errors
-    /// Unknown reference, wrong length.
-    pub fn get(&self, references: &[ValueReference], values: &mut [f64]) -> Result<(), Error> {
-        let _ = (references, values);
-        todo!()
-    }
-
-    /// Advances from `t` to `t + h` exactly, in as many internal steps as stability asks for.
-    ///
-    /// # Errors
-    /// [`Error::NotAllowedNow`], [`Error::BadArgument`] (t is not the current time, h not finite and positive, past the
-    /// stop time): nothing happened. [`Error::Solver`]: mode is [`Mode::Failed`] afterwards.
-    pub fn do_step(&mut self, t: f64, h: f64) -> Result<StepReport, Error> {
-        let _ = (t, h);
-        todo!()
-    }
-
-    /// Everything that can change a later bit, as bytes: versioned header, scene fingerprint, checksum. Allowed in every mode.
+    /// Everything that can change a later bit, as bytes: versioned header, scene fingerprint, checksum. Allowed in
+    /// every mode; a failed component saves as failed.
     ///
     /// # Errors
     /// [`Error::Snapshot`].
     pub fn save(&self) -> Result<Vec<u8>, Error> {
-        todo!()
+        let payload = self.payload().map_err(Error::Snapshot)?;
+        Ok(snapshot::seal(&self.fingerprint, &payload))
     }
 
     /// Goes back (or forth) to saved bytes, also from another process. Allowed in every mode.
@@ -198,16 +216,39 @@ impl Component {
     /// # Errors
     /// [`Error::Snapshot`] for bytes of another version or scene, cut short or corrupt; the component stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        let _ = bytes;
-        todo!()
+        let payload = snapshot::open(&self.fingerprint, bytes)?;
+        let (life, engine): (Life, &[u8]) = snapshot::split(payload).map_err(Error::Snapshot)?;
+        let counts = |l: &Life| {
+            (
+                l.inputs.gate_opening.len(),
+                l.inputs.inflow_rate.len(),
+                l.outputs.len(),
+            )
+        };
+        if counts(&life) != counts(&self.life) {
+            return Err(Error::Snapshot(format!(
+                "found {:?} gates, inflows and output values, allowed {:?} (this scene's)",
+                counts(&life),
+                counts(&self.life)
+            )));
+        }
+        self.engine.restore(engine).map_err(Error::Snapshot)?;
+        self.life = life;
+        Ok(())
     }
 
-    /// Back to Instantiated with start values, as after `new`. Allowed in every mode.
+    /// The state without header: length of life, life, engine.
+    fn payload(&self) -> Result<Vec<u8>, String> {
+        snapshot::join(&self.life, &self.engine.save()?)
+    }
+
+    /// Back to Instantiated with start values, as after `new` (threads stay). Allowed in every mode.
     ///
     /// # Errors
-    /// [`Error::Setup`].
+    /// [`Error::Setup`]; the component stays as it was.
     pub fn reset(&mut self) -> Result<(), Error> {
-        todo!()
+        (self.engine, self.life) = Self::start(&self.scene, &self.table, self.threads)?;
+        Ok(())
     }
 
     /// Stepping (or Failed) -> Terminated.
@@ -215,59 +256,50 @@ impl Component {
     /// # Errors
     /// [`Error::NotAllowedNow`].
     pub fn terminate(&mut self) -> Result<(), Error> {
-        todo!()
+        lifecycle::check(Call::Terminate, self.life.mode)?;
+        self.life.mode = Mode::Terminated;
+        Ok(())
     }
 
     /// The account of material.
     #[must_use]
     pub fn ledger(&self) -> MassLedger {
-        todo!()
+        self.engine.ledger()
     }
 
     /// Figures of the solver.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
-        todo!()
+        Statistics {
+            communication_steps: self.life.communication_steps,
+            ..self.engine.statistics()
+        }
     }
 
     /// Particles as plain arrays, for logs and pictures. Built on demand.
     #[must_use]
     pub fn particles(&self) -> ParticleView {
-        todo!()
+        self.engine.particles()
     }
 
-    /// Wall and gate particles where they are now, for pictures.
+    /// Wall and gate particles where they are now, for pictures [m].
     #[must_use]
     pub fn wall_points(&self) -> Vec<[f64; 3]> {
-        todo!()
+        self.engine.wall_points()
     }
 
-    /// Threads used by sweeps: results do not depend on it. 0 means all cores.
+    /// Threads used by sweeps: results do not depend on it. 0 means all cores. A new component has 1. The same as
+    /// setting `solver.threads`.
     pub fn set_threads(&mut self, threads: usize) {
-        let _ = threads;
-        todo!()
+        self.threads = threads;
+        self.engine.set_threads(threads);
     }
 
     /// SHA-256 of the state (without header), hex: two components with the same hash go on with the same bits.
     #[must_use]
     pub fn state_hash(&self) -> String {
-        todo!()
+        // A state too large to encode has no hash; its error text stands in, so that it equals no other state's.
+        self.payload()
+            .map_or_else(|why| why, |payload| snapshot::hash(&payload))
     }
-}
-
-/// A copy of the particles in single precision, for logs and pictures (planar scenes: z = 0).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ParticleView {
-    /// Position [m].
-    pub position: Vec<[f32; 3]>,
-    /// Velocity [m/s].
-    pub velocity: Vec<[f32; 3]>,
-    /// Pressure [Pa].
-    pub pressure: Vec<f32>,
-    /// Inertial number [1].
-    pub inertial_number: Vec<f32>,
-    /// Phase: index of the material.
-    pub phase: Vec<u8>,
-    /// Whether the particle sleeps (always 0 until sleeping exists).
-    pub asleep: Vec<u8>,
 }

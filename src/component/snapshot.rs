@@ -56,6 +56,30 @@ pub(super) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     Ok(value)
 }
 
+/// A value and raw bytes behind it as one payload.
+///
+/// # Errors
+/// As [`encode`].
+pub(super) fn join<T: Serialize>(value: &T, raw: &[u8]) -> Result<Vec<u8>, String> {
+    let head = encode(value)?;
+    let mut payload = (head.len() as u64).to_le_bytes().to_vec();
+    payload.extend_from_slice(&head);
+    payload.extend_from_slice(raw);
+    Ok(payload)
+}
+
+/// What [`join`] joined.
+///
+/// # Errors
+/// The payload is something else.
+pub(super) fn split<T: DeserializeOwned>(payload: &[u8]) -> Result<(T, &[u8]), String> {
+    let cut = || "the payload is cut short".to_owned();
+    let (length, rest) = payload.split_at_checked(8).ok_or_else(cut)?;
+    let length = usize::try_from(u64::from_le_bytes(array(length))).map_err(|_| cut())?;
+    let (head, raw) = rest.split_at_checked(length).ok_or_else(cut)?;
+    Ok((decode(head)?, raw))
+}
+
 /// SHA-256 of a scene's text.
 pub(super) fn fingerprint(source: &str) -> [u8; 32] {
     Sha256::digest(source.as_bytes()).into()

@@ -1,4 +1,14 @@
 //! The table of variables: the only list. FMI XML, C names, Zenoh keys, MCAP channels and docs are made from it.
+//!
+//! Here: what a row is. `rows` holds the list itself, `document` writes docs/variables.md from it.
+
+mod document;
+mod rows;
+
+pub use document::variables_markdown;
+pub(super) use rows::Source;
+
+use crate::scene::Scene;
 
 /// Handle of a variable, the same in FMI 2, FMI 3, C and Zenoh.
 pub type ValueReference = u32;
@@ -64,7 +74,7 @@ pub struct Variable {
     pub variability: Variability,
     /// Kind of value.
     pub kind: ValueKind,
-    /// SI unit as FMI spells it: "m", "kg/s", "Pa", "N", "1".
+    /// SI unit as FMI spells it: "m", "kg/s", "Pa", "N", "1"; empty for whole numbers and flags.
     pub unit: &'static str,
     /// Unit people like to see, with factor: e.g. ("mm", 1000.0).
     pub display_unit: Option<(&'static str, f64)>,
@@ -96,9 +106,34 @@ impl Variable {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VariableTable {
     rows: Vec<Variable>,
+    /// Where the value of each row comes from, in the same order.
+    sources: Vec<Source>,
+    /// First flat value of each row; elements point into their array's values.
+    offsets: Vec<usize>,
 }
 
 impl VariableTable {
+    /// The table of a scene's component.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        rows::list(scene)
+    }
+
+    /// Where a row's value comes from.
+    pub(super) fn source(&self, reference: ValueReference) -> Option<&Source> {
+        self.sources.get(reference as usize)
+    }
+
+    /// First flat value of a row of this table.
+    pub(super) fn offset(&self, row: &Variable) -> usize {
+        self.offsets[row.reference as usize]
+    }
+
+    /// Rows with their sources.
+    pub(super) fn with_sources(&self) -> impl Iterator<Item = (&Variable, &Source)> {
+        self.rows.iter().zip(&self.sources)
+    }
+
     /// All rows.
     #[must_use]
     pub fn rows(&self) -> &[Variable] {

@@ -296,6 +296,31 @@ pub struct Schedule {
     pub interpolation: Interpolation,
 }
 
+impl Schedule {
+    /// Value at time `t` [s]: what the input is set to at a communication point.
+    ///
+    /// Lines are weighted as FMPy weights its input tables, so that both give the same bits.
+    #[must_use]
+    pub fn value_at(&self, t: f64) -> f64 {
+        let held = |i: usize| self.points.get(i).map_or(0.0, |p| p.1);
+        match self.interpolation {
+            Interpolation::Hold => {
+                let next = self.points.partition_point(|p| p.0 <= t);
+                held(next.saturating_sub(1))
+            }
+            Interpolation::Linear => {
+                let next = self.points.partition_point(|p| p.0 < t);
+                if next == 0 || next == self.points.len() {
+                    return held(next.saturating_sub(1));
+                }
+                let ((t0, v0), (t1, v1)) = (self.points[next - 1], self.points[next]);
+                let w0 = (t1 - t) / (t1 - t0);
+                w0 * v0 + (1.0 - w0) * v1
+            }
+        }
+    }
+}
+
 /// An input variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputTarget {
@@ -321,4 +346,22 @@ pub struct LogSettings {
     pub particles_every: f64,
     /// Whether a run stops when its log cannot be written.
     pub required: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn schedules_hold_or_go_straight_between_points() {
+        let mut schedule = Schedule {
+            input: InputTarget::GateOpening(0),
+            points: vec![(1.0, 0.0), (2.0, 1.0), (4.0, 0.5)],
+            interpolation: Interpolation::Linear,
+        };
+        let at = |s: &Schedule| [0.0, 1.0, 1.25, 2.0, 3.0, 4.0, 9.0].map(|t| s.value_at(t));
+        assert_eq!(at(&schedule), [0.0, 0.0, 0.25, 1.0, 0.75, 0.5, 0.5]);
+        schedule.interpolation = Interpolation::Hold;
+        assert_eq!(at(&schedule), [0.0, 0.0, 0.0, 1.0, 1.0, 0.5, 0.5]);
+    }
 }

@@ -1,0 +1,211 @@
+//! Setting and getting variables: all or nothing, any order, any partition, any repetition.
+
+use super::engine::Ramp;
+use super::lifecycle::{self, Call};
+use super::variables::{Causality, Source, ValueKind, Variability, Variable};
+use super::{Component, Error, ValueReference};
+
+impl Component {
+    /// Sets variables, all or none. `values` holds the flat values of all references, one after the other.
+    ///
+    /// An input is held from here on; a slope that was given before is dropped.
+    ///
+    /// # Errors
+    /// Unknown reference, wrong length, not finite, out of range, not settable (in this mode): names the variable,
+    /// what was found and what is allowed. Nothing is changed then.
+    pub fn set(&mut self, references: &[ValueReference], values: &[f64]) -> Result<(), Error> {
+        self.check_length("set", references, values.len())?;
+        for (row, value) in self.settable("set", references)?.into_iter().zip(values) {
+            check_value(row, *value)?;
+        }
+        for (reference, value) in references.iter().zip(values) {
+            match self.table.source(*reference) {
+                Some(Source::Threads) => self.set_threads(*value as usize),
+                Some(source) => {
+                    if let Some(ramp) = self.input_mut(*source) {
+                        *ramp = Ramp {
+                            value: *value,
+                            slope: 0.0,
+                        };
+                    }
+                }
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives inputs a slope for the next step: value + slope (t - t0), t0 being the start of the step. After the
+    /// step the input holds the value it reached. `slopes` in the variable's unit per second.
+    ///
+    /// # Errors
+    /// As [`Component::set`]; parameters have no slope.
+    pub fn set_input_derivatives(
+        &mut self,
+        references: &[ValueReference],
+        slopes: &[f64],
+    ) -> Result<(), Error> {
+        const CALL: &str = "set_input_derivatives";
+        self.check_length(CALL, references, slopes.len())?;
+        for (row, slope) in self.settable(CALL, references)?.into_iter().zip(slopes) {
+            if row.causality != Causality::Input {
+                return Err(bad(CALL, &row.name, "a parameter", "inputs"));
+            }
+            if !slope.is_finite() {
+                return Err(bad(CALL, &row.name, &slope.to_string(), "a finite slope"));
+            }
+        }
+        for (reference, slope) in references.iter().zip(slopes) {
+            if let Some(source) = self.table.source(*reference).copied()
+                && let Some(ramp) = self.input_mut(source)
+            {
+                ramp.slope = *slope;
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads variables into `values` (flat, as in [`Component::set`]). Pure: gauges are sampled once a step, not here.
+    ///
+    /// # Errors
+    /// Unknown reference, wrong length.
+    pub fn get(&self, references: &[ValueReference], values: &mut [f64]) -> Result<(), Error> {
+        self.check_length("get", references, values.len())?;
+        let mut rest = values;
+        for row in self.rows("get", references)? {
+            // The lengths were checked above.
+            let (mine, others) = rest.split_at_mut(row.len());
+            self.read(row, mine);
+            rest = others;
+        }
+        Ok(())
+    }
+
+    /// The values of one row.
+    fn read(&self, row: &Variable, values: &mut [f64]) {
+        let inputs = &self.life.inputs;
+        match self.table.source(row.reference) {
+            Some(Source::Time) => values.fill(self.life.time),
+            Some(Source::Threads) => values.fill(self.threads as f64),
+            Some(Source::GateOpening(i)) => values.fill(inputs.gate_opening[*i].value),
+            Some(Source::InflowRate(i)) => values.fill(inputs.inflow_rate[*i].value),
+            _ => {
+                let offset = self.table.offset(row);
+                values.copy_from_slice(&self.life.outputs[offset..offset + values.len()]);
+            }
+        }
+    }
+
+    fn input_mut(&mut self, source: Source) -> Option<&mut Ramp> {
+        match source {
+            Source::GateOpening(i) => self.life.inputs.gate_opening.get_mut(i),
+            Source::InflowRate(i) => self.life.inputs.inflow_rate.get_mut(i),
+            _ => None,
+        }
+    }
+
+    /// Rows of references.
+    fn rows(
+        &self,
+        call: &'static str,
+        references: &[ValueReference],
+    ) -> Result<Vec<&Variable>, Error> {
+        let find = |reference: &ValueReference| {
+            self.table.by_reference(*reference).ok_or_else(|| {
+                let last = self.table.rows().len() - 1;
+                bad(
+                    call,
+                    "value reference",
+                    &reference.to_string(),
+                    &format!("0 to {last}"),
+                )
+            })
+        };
+        references.iter().map(find).collect()
+    }
+
+    /// Rows of references, all of them inputs or parameters that may be set in this mode.
+    fn settable(
+        &self,
+        call: &'static str,
+        references: &[ValueReference],
+    ) -> Result<Vec<&Variable>, Error> {
+        let rows = self.rows(call, references)?;
+        for row in &rows {
+            let kind = match (row.causality, row.variability) {
+                (Causality::Input, _) => Call::SetInput,
+                (Causality::Parameter, Variability::Tunable) => Call::SetTunable,
+                (Causality::Parameter, _) => Call::SetFixed,
+                (Causality::Output, _) => {
+                    return Err(bad(call, &row.name, "an output", "inputs and parameters"));
+                }
+                (Causality::Independent, _) => {
+                    return Err(bad(
+                        call,
+                        &row.name,
+                        "the independent variable",
+                        "inputs and parameters",
+                    ));
+                }
+            };
+            lifecycle::check(kind, self.life.mode)?;
+        }
+        Ok(rows)
+    }
+
+    fn check_length(
+        &self,
+        call: &'static str,
+        references: &[ValueReference],
+        found: usize,
+    ) -> Result<(), Error> {
+        let wanted: usize = self
+            .rows(call, references)?
+            .iter()
+            .map(|row| row.len())
+            .sum();
+        if wanted != found {
+            let allowed = format!(
+                "{wanted}, the number of values of the {} references",
+                references.len()
+            );
+            return Err(bad(call, "number of values", &found.to_string(), &allowed));
+        }
+        Ok(())
+    }
+}
+
+/// Finite, in range, whole where it must be.
+fn check_value(row: &Variable, value: f64) -> Result<(), Error> {
+    let (least, most) = row.range.unwrap_or((f64::MIN, f64::MAX));
+    let whole = row.kind == ValueKind::Real || value.fract() == 0.0;
+    if value.is_finite() && (least..=most).contains(&value) && whole {
+        return Ok(());
+    }
+    let number = if row.kind == ValueKind::Real {
+        "a number"
+    } else {
+        "a whole number"
+    };
+    let unit = if row.unit.is_empty() || row.unit == "1" {
+        ""
+    } else {
+        row.unit
+    };
+    let allowed = format!("{number} from {least} to {most} {unit}");
+    Err(bad(
+        "set",
+        &row.name,
+        &value.to_string(),
+        allowed.trim_end(),
+    ))
+}
+
+fn bad(call: &'static str, what: &str, found: &str, allowed: &str) -> Error {
+    Error::BadArgument {
+        call,
+        what: what.to_owned(),
+        found: found.to_owned(),
+        allowed: allowed.to_owned(),
+    }
+}

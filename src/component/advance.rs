@@ -1,0 +1,128 @@
+//! One communication step: check, advance the engine to t + h, sample outputs.
+
+use super::engine::Ramp;
+use super::lifecycle::{self, Call};
+use super::outputs::{self, FlowMass};
+use super::{Component, Error, Mode, StepReport};
+
+/// Orchestrators add up step sizes, so their time may differ from ours by rounding; more than this share (or this
+/// many seconds below 1 s) is a mistake.
+const TIME_SLACK: f64 = 1e-9;
+
+/// Whether two times are the same but for an orchestrator's rounding.
+fn is_same_time(a: f64, b: f64) -> bool {
+    (a - b).abs() <= TIME_SLACK * b.abs().max(1.0)
+}
+
+impl Component {
+    /// Advances from `t` to `t + h` exactly, in as many internal steps as stability asks for.
+    ///
+    /// `t` may differ from [`Component::time`] by a billionth (of it, or of a second below 1 s), for orchestrators
+    /// that add up steps: the step then begins at the component's own time and ends at `t + h`, bit for bit.
+    ///
+    /// # Errors
+    /// [`Error::NotAllowedNow`], [`Error::BadArgument`] (t is not the current time, h not finite and positive, past the
+    /// stop time, an input's slope leads out of its range): nothing happened. [`Error::Solver`]: mode is
+    /// [`Mode::Failed`] afterwards, time and outputs are those of the last good step.
+    pub fn do_step(&mut self, t: f64, h: f64) -> Result<StepReport, Error> {
+        lifecycle::check(Call::DoStep, self.life.mode)?;
+        let end = self.check_step(t, h)?;
+        let start = self.life.time;
+        self.check_ramps(end - start)?;
+        let before = FlowMass::now(self.engine.devices());
+        let advance = self
+            .engine
+            .advance(start, end, &self.life.inputs)
+            .map_err(|why| {
+                self.life.mode = Mode::Failed;
+                Error::Solver(why.to_string())
+            })?;
+        let outputs = outputs::sample(&self.table, self.engine.as_ref(), &before, end - start)
+            .map_err(|why| {
+                self.life.mode = Mode::Failed;
+                Error::Solver(format!("at t = {end} s: {why}"))
+            })?;
+        self.life.outputs = outputs;
+        self.life.time = end;
+        self.life.communication_steps += 1;
+        self.hold_inputs(end - start);
+        Ok(StepReport {
+            time: end,
+            substeps: advance.substeps,
+            smallest_step: advance.smallest_step,
+            bound_by: advance.bound_by,
+            iterations: advance.iterations,
+        })
+    }
+
+    /// End of the step.
+    fn check_step(&self, t: f64, h: f64) -> Result<f64, Error> {
+        let refuse = |what: &str, found: f64, allowed: String| {
+            Err(Error::BadArgument {
+                call: "do_step",
+                what: what.to_owned(),
+                found: format!("{found} s"),
+                allowed,
+            })
+        };
+        let time = self.life.time;
+        // Written so that NaN is refused.
+        if !is_same_time(t, time) {
+            return refuse("t", t, format!("{time} s, the current time"));
+        }
+        if !(h.is_finite() && h > 0.0) {
+            return refuse("h", h, "a finite step above 0 s".to_owned());
+        }
+        let end = t + h;
+        if end <= time {
+            return refuse(
+                "h",
+                h,
+                format!("a step that changes the time {time} s in double precision"),
+            );
+        }
+        match self.life.stop {
+            Some(stop) if end > stop && !is_same_time(end, stop) => {
+                let allowed = format!("a step that ends by {stop} s, the stop time");
+                refuse("t + h", end, allowed)
+            }
+            _ => Ok(end),
+        }
+    }
+
+    /// Inputs stay in range over the step.
+    fn check_ramps(&self, h: f64) -> Result<(), Error> {
+        let inputs = &self.life.inputs;
+        let openings = inputs.gate_opening.iter().zip(&self.scene.gates);
+        let rates = inputs.inflow_rate.iter().zip(&self.scene.inflows);
+        let openings = openings.map(|(ramp, g)| (ramp, format!("gate.{}.opening", g.name), 1.0));
+        let rates = rates.map(|(ramp, i)| (ramp, format!("inflow.{}.rate", i.name), i.max_rate));
+        for (ramp, name, most) in openings.chain(rates) {
+            let reached = ramp.at(h);
+            if ramp.slope != 0.0 && !(0.0..=most).contains(&reached) {
+                return Err(Error::BadArgument {
+                    call: "do_step",
+                    what: format!("{name} at the end of the step, by its slope {}", ramp.slope),
+                    found: reached.to_string(),
+                    allowed: format!("0 to {most}"),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Inputs hold the value they reached; slopes were for one step.
+    fn hold_inputs(&mut self, h: f64) {
+        let inputs = &mut self.life.inputs;
+        for ramp in inputs
+            .gate_opening
+            .iter_mut()
+            .chain(&mut inputs.inflow_rate)
+        {
+            *ramp = Ramp {
+                value: ramp.at(h),
+                slope: 0.0,
+            };
+        }
+    }
+}

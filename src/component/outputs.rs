@@ -1,0 +1,115 @@
+//! Output values, computed once per communication step: reading them later is a copy.
+
+use super::engine::{Devices, Engine};
+use super::variables::{Source, VariableTable};
+use super::{MassLedger, Statistics};
+use crate::gauge::Reading;
+
+/// What output values are computed from.
+pub(super) struct Moment<'a> {
+    devices: &'a Devices,
+    readings: Vec<Reading>,
+    ledger: MassLedger,
+    statistics: Statistics,
+    /// Mass of inflows and outflows when the step began [kg].
+    before: &'a FlowMass,
+    /// Length of the last step [s], 0 before the first.
+    step: f64,
+}
+
+/// Mass that went through each device since the start [kg].
+#[derive(Clone, Debug, Default)]
+pub(super) struct FlowMass {
+    inflows: Vec<f64>,
+    outflows: Vec<f64>,
+}
+
+impl FlowMass {
+    /// As it is now.
+    pub(super) fn now(devices: &Devices) -> Self {
+        Self {
+            inflows: devices.inflows.iter().map(|i| i.mass).collect(),
+            outflows: devices.outflow_mass.clone(),
+        }
+    }
+}
+
+/// Flat values of all rows that are not elements of another, in order of the table; inputs and time stay 0.
+///
+/// # Errors
+/// Name and value of the first output that is not finite.
+pub(super) fn sample(
+    table: &VariableTable,
+    engine: &dyn Engine,
+    before: &FlowMass,
+    step: f64,
+) -> Result<Vec<f64>, String> {
+    let moment = Moment {
+        devices: engine.devices(),
+        readings: engine.sample(step),
+        ledger: engine.ledger(),
+        statistics: engine.statistics(),
+        before,
+        step,
+    };
+    let mut values = Vec::new();
+    for (row, source) in table.with_sources() {
+        if row.element_of.is_some() {
+            continue;
+        }
+        for k in 0..row.len() {
+            let value = moment.value(*source, k);
+            if !value.is_finite() {
+                return Err(format!(
+                    "output {} is {value}; allowed: finite numbers",
+                    row.name
+                ));
+            }
+            values.push(value);
+        }
+    }
+    Ok(values)
+}
+
+impl Moment<'_> {
+    /// The k-th value of a row; 0 for rows that are not outputs.
+    fn value(&self, source: Source, k: usize) -> f64 {
+        let flag = |yes: bool| if yes { 1.0 } else { 0.0 };
+        match source {
+            Source::Time | Source::Threads | Source::GateOpening(_) | Source::InflowRate(_) => 0.0,
+            Source::GateActualOpening(i) => self.devices.gates[i].opening,
+            Source::GateBlocked(i) => flag(self.devices.gates[i].blocked),
+            Source::InflowActualRate(i) => {
+                self.over_step(self.devices.inflows[i].mass - self.before.inflows[i])
+            }
+            Source::InflowMass(i) => self.devices.inflows[i].mass,
+            Source::InflowBlocked(i) => flag(self.devices.inflows[i].blocked),
+            Source::OutflowMass(i) => self.devices.outflow_mass[i],
+            Source::OutflowRate(i) => {
+                self.over_step(self.devices.outflow_mass[i] - self.before.outflows[i])
+            }
+            Source::Reading { gauge, first } => self.readings[gauge].values[first + k],
+            Source::Validity(gauge) => f64::from(self.readings[gauge].validity.code()),
+            Source::MassInitial => self.ledger.initial,
+            Source::MassInflow => self.ledger.inflow,
+            Source::MassOutflow => self.ledger.outflow,
+            Source::MassPresent => self.ledger.present,
+            Source::MassError => self.ledger.error(),
+            // Exact up to 2^53.
+            Source::Steps => self.statistics.steps as f64,
+            Source::Iterations => self.statistics.iterations as f64,
+            Source::StepSize => self.statistics.step_size,
+            Source::Particles => self.statistics.particles as f64,
+            Source::KineticEnergy => self.statistics.kinetic_energy,
+            Source::ShareDilute => self.statistics.share_dilute,
+        }
+    }
+
+    fn over_step(&self, mass: f64) -> f64 {
+        if self.step > 0.0 {
+            mass / self.step
+        } else {
+            0.0
+        }
+    }
+}

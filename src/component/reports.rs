@@ -1,0 +1,79 @@
+//! What a component tells beside its variables: step reports, the account of material, figures, particles.
+
+use crate::solver::StepBound;
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepReport {
+    /// Time reached: t + h, bit for bit [s].
+    pub time: f64,
+    /// Internal steps taken.
+    pub substeps: u32,
+    /// Smallest internal step [s].
+    pub smallest_step: f64,
+    /// What bound it.
+    pub bound_by: StepBound,
+    /// Iterations of the viscous solve, summed over internal steps.
+    pub iterations: u32,
+}
+
+/// Exact account of material: initial + inflow - outflow = present, in f64, at every time.
+///
+/// Particle masses are multiples of a power of two, so that every sum is exact whatever its order.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MassLedger {
+    /// Mass at the start [kg].
+    pub initial: f64,
+    /// Mass that came in since [kg].
+    pub inflow: f64,
+    /// Mass that left since [kg].
+    pub outflow: f64,
+    /// Mass present, summed over particles [kg].
+    pub present: f64,
+}
+
+impl MassLedger {
+    /// initial + inflow - outflow - present [kg]: exactly 0.
+    #[must_use]
+    pub fn error(&self) -> f64 {
+        self.initial + self.inflow - self.outflow - self.present
+    }
+}
+
+/// Figures of the solver that go to logs and summaries.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Communication steps done.
+    pub communication_steps: u64,
+    /// Internal steps done.
+    pub steps: u64,
+    /// Iterations of viscous solves, in all.
+    pub iterations: u64,
+    /// Particles present.
+    pub particles: u64,
+    /// Last internal step [s].
+    pub step_size: f64,
+    /// Kinetic energy [J].
+    pub kinetic_energy: f64,
+    /// Largest particle speed [m/s].
+    pub max_speed: f64,
+    /// Share of mass with I > 0.3 [1]: outside the dense regime.
+    pub share_dilute: f64,
+}
+
+/// A copy of the particles in single precision, for logs and pictures (planar scenes: z = 0).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParticleView {
+    /// Position [m].
+    pub position: Vec<[f32; 3]>,
+    /// Velocity [m/s].
+    pub velocity: Vec<[f32; 3]>,
+    /// Pressure [Pa].
+    pub pressure: Vec<f32>,
+    /// Inertial number [1].
+    pub inertial_number: Vec<f32>,
+    /// Phase: index of the material.
+    pub phase: Vec<u8>,
+    /// Whether the particle sleeps (always 0 until sleeping exists).
+    pub asleep: Vec<u8>,
+}

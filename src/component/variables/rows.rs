@@ -1,0 +1,398 @@
+//! The list: which variables each kind of device and gauge brings, with units, ranges and words.
+//!
+//! To add a variable: one row here, its [`Source`], and the value in `component::outputs`. References count from
+//! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals.
+
+use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable};
+use crate::scene::{Dimension, Gate, Gauge, GaugeKind, Inflow, Outflow, Scene};
+
+/// Where a row's value comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::component) enum Source {
+    Time,
+    Threads,
+    /// Inputs, by index of the device.
+    GateOpening(usize),
+    InflowRate(usize),
+    /// Devices, by index.
+    GateActualOpening(usize),
+    GateBlocked(usize),
+    InflowActualRate(usize),
+    InflowMass(usize),
+    InflowBlocked(usize),
+    OutflowMass(usize),
+    OutflowRate(usize),
+    /// Values of a gauge's reading from the given one on, as many as the row has.
+    Reading {
+        gauge: usize,
+        first: usize,
+    },
+    Validity(usize),
+    MassInitial,
+    MassInflow,
+    MassOutflow,
+    MassPresent,
+    MassError,
+    Steps,
+    Iterations,
+    StepSize,
+    Particles,
+    KineticEnergy,
+    ShareDilute,
+}
+
+/// A row before it has its number.
+struct Row {
+    variable: Variable,
+    source: Source,
+}
+
+impl Row {
+    /// A real output.
+    fn output(
+        name: impl Into<String>,
+        unit: &'static str,
+        source: Source,
+        text: impl Into<String>,
+    ) -> Self {
+        let variable = Variable {
+            reference: 0,
+            name: name.into(),
+            description: text.into(),
+            causality: Causality::Output,
+            variability: Variability::Continuous,
+            kind: ValueKind::Real,
+            unit,
+            display_unit: None,
+            shape: Vec::new(),
+            start: Start::Calculated,
+            range: None,
+            element_of: None,
+        };
+        Self { variable, source }
+    }
+
+    /// A real input with its start value and largest value; the smallest is 0.
+    fn input(
+        name: String,
+        unit: &'static str,
+        source: Source,
+        start: f64,
+        most: f64,
+        text: String,
+    ) -> Self {
+        let mut row = Self::output(name, unit, source, text);
+        row.variable.causality = Causality::Input;
+        row.variable.start = Start::Exact(vec![start]);
+        row.within(0.0, most)
+    }
+
+    fn kind(mut self, kind: ValueKind) -> Self {
+        self.variable.kind = kind;
+        self.variable.variability = Variability::Discrete;
+        self
+    }
+
+    fn display(mut self, unit: Option<(&'static str, f64)>) -> Self {
+        self.variable.display_unit = unit;
+        self
+    }
+
+    fn within(mut self, least: f64, most: f64) -> Self {
+        self.variable.range = Some((least, most));
+        self
+    }
+}
+
+/// The table of a scene.
+pub(super) fn list(scene: &Scene) -> VariableTable {
+    let mut table = VariableTable::default();
+    let mut add = |row: Row| {
+        let mut variable = row.variable;
+        variable.reference = table.rows.len() as u32;
+        table.rows.push(variable);
+        table.sources.push(row.source);
+    };
+    general().for_each(&mut add);
+    for (i, gate) in scene.gates.iter().enumerate() {
+        gate_rows(i, gate).for_each(&mut add);
+    }
+    for (i, inflow) in scene.inflows.iter().enumerate() {
+        inflow_rows(i, inflow).for_each(&mut add);
+    }
+    for (i, outflow) in scene.outflows.iter().enumerate() {
+        outflow_rows(i, outflow).for_each(&mut add);
+    }
+    for (i, gauge) in scene.gauges.iter().enumerate() {
+        gauge_rows(scene, i, gauge).into_iter().for_each(&mut add);
+    }
+    totals().for_each(&mut add);
+    number_elements(&mut table);
+    table
+}
+
+fn general() -> impl Iterator<Item = Row> {
+    let mut time = Row::output("time", "s", Source::Time, "simulated time");
+    time.variable.causality = Causality::Independent;
+    let mut threads = Row::output(
+        "solver.threads",
+        "",
+        Source::Threads,
+        "threads of the solver, 0 for all cores; results do not depend on it",
+    )
+    .within(0.0, 256.0);
+    threads.variable.kind = ValueKind::Integer;
+    threads.variable.causality = Causality::Parameter;
+    threads.variable.variability = Variability::Tunable;
+    threads.variable.start = Start::Exact(vec![1.0]);
+    [time, threads].into_iter()
+}
+
+const PERCENT: Option<(&str, f64)> = Some(("%", 100.0));
+
+fn gate_rows(i: usize, gate: &Gate) -> impl Iterator<Item = Row> {
+    let name = &gate.name;
+    [
+        Row::input(
+            format!("gate.{name}.opening"),
+            "1",
+            Source::GateOpening(i),
+            gate.start,
+            1.0,
+            format!("opening wanted of gate {name}: 0 shut, 1 open; the plate follows at its largest speed"),
+        )
+        .display(PERCENT),
+        Row::output(
+            format!("gate.{name}.actual_opening"),
+            "1",
+            Source::GateActualOpening(i),
+            format!("opening that gate {name} has"),
+        )
+        .display(PERCENT)
+        .within(0.0, 1.0),
+        Row::output(
+            format!("gate.{name}.blocked"),
+            "",
+            Source::GateBlocked(i),
+            format!("whether material kept gate {name} from following its input in the last step"),
+        )
+        .kind(ValueKind::Boolean),
+    ]
+    .into_iter()
+}
+
+fn inflow_rows(i: usize, inflow: &Inflow) -> impl Iterator<Item = Row> {
+    let name = &inflow.name;
+    [
+        Row::input(
+            format!("inflow.{name}.rate"),
+            "kg/s",
+            Source::InflowRate(i),
+            inflow.rate,
+            inflow.max_rate,
+            format!("mass wanted from inflow {name} per second"),
+        ),
+        Row::output(
+            format!("inflow.{name}.actual_rate"),
+            "kg/s",
+            Source::InflowActualRate(i),
+            format!("mass that inflow {name} let in during the last step, per second"),
+        ),
+        Row::output(
+            format!("inflow.{name}.mass"),
+            "kg",
+            Source::InflowMass(i),
+            format!("mass that inflow {name} let in since the start"),
+        ),
+        Row::output(
+            format!("inflow.{name}.blocked"),
+            "",
+            Source::InflowBlocked(i),
+            format!(
+                "whether material before inflow {name} kept it from letting in what was wanted"
+            ),
+        )
+        .kind(ValueKind::Boolean),
+    ]
+    .into_iter()
+}
+
+fn outflow_rows(i: usize, outflow: &Outflow) -> impl Iterator<Item = Row> {
+    let name = &outflow.name;
+    [
+        Row::output(
+            format!("outflow.{name}.mass"),
+            "kg",
+            Source::OutflowMass(i),
+            format!("mass that left through outflow {name} since the start"),
+        ),
+        Row::output(
+            format!("outflow.{name}.rate"),
+            "kg/s",
+            Source::OutflowRate(i),
+            format!("mass that left through outflow {name} during the last step, per second"),
+        ),
+    ]
+    .into_iter()
+}
+
+fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
+    let name = &gauge.name;
+    let length = length_display(scene);
+    let reading = |suffix: &str, unit: &'static str, first: usize, text: &str| {
+        let source = Source::Reading { gauge: i, first };
+        Row::output(
+            format!("gauge.{name}.{suffix}"),
+            unit,
+            source,
+            format!("{text} at gauge {name}"),
+        )
+    };
+    let mut rows = match &gauge.kind {
+        GaugeKind::Depth { length: most, .. } => {
+            vec![
+                reading("depth", "m", 0, "depth of material")
+                    .display(length)
+                    .within(0.0, *most),
+            ]
+        }
+        GaugeKind::Profile {
+            count,
+            length: most,
+            ..
+        } => {
+            let depth = || {
+                reading("depth", "m", 0, "depths of material")
+                    .display(length)
+                    .within(0.0, *most)
+            };
+            let mut rows = vec![depth()];
+            rows[0].variable.shape = vec![*count];
+            rows.extend((0..*count).map(|k| {
+                let mut row = depth();
+                row.variable.name += &format!("[{}]", k + 1);
+                row.variable.description =
+                    format!("depth of material at foot {} of gauge {name}", k + 1);
+                row.variable.element_of = Some((0, k));
+                row.source = Source::Reading { gauge: i, first: k };
+                row
+            }));
+            rows
+        }
+        GaugeKind::Discharge { .. } => vec![
+            reading(
+                "discharge",
+                "kg/s",
+                0,
+                "mass that crossed from left to right in the last step, per second,",
+            ),
+            reading(
+                "mass",
+                "kg",
+                1,
+                "net mass that crossed from left to right since the start",
+            ),
+        ],
+        GaugeKind::Force { .. } => {
+            let axes = if scene.dimension == Dimension::Two {
+                2
+            } else {
+                3
+            };
+            let force = |(k, axis): (usize, &str)| {
+                let text = format!("force of the material along {axis}, mean over the last step,");
+                reading(&format!("force_{axis}"), "N", k, &text)
+            };
+            ["x", "y", "z"]
+                .into_iter()
+                .take(axes)
+                .enumerate()
+                .map(force)
+                .collect()
+        }
+        GaugeKind::Pressure { .. } => {
+            vec![reading("pressure", "Pa", 0, "pressure of the material")]
+        }
+        GaugeKind::Front { .. } => vec![
+            reading(
+                "front",
+                "m",
+                0,
+                "outermost distance with a depth of one particle spacing",
+            )
+            .display(length),
+            reading(
+                "front_quantile",
+                "m",
+                1,
+                "distance that 99.5 % of the mass ahead stays behind",
+            )
+            .display(length),
+        ],
+    };
+    let text =
+        format!("whether gauge {name} reads anything: 0 valid, 1 empty, 2 outside, 3 blocked");
+    let validity = Row::output(
+        format!("gauge.{name}.validity"),
+        "",
+        Source::Validity(i),
+        text,
+    );
+    rows.push(validity.kind(ValueKind::Integer).within(0.0, 3.0));
+    rows
+}
+
+/// Millimetres for scenes smaller than a metre.
+fn length_display(scene: &Scene) -> Option<(&'static str, f64)> {
+    let axes = if scene.dimension == Dimension::Two {
+        2
+    } else {
+        3
+    };
+    let extent = (0..axes)
+        .map(|a| scene.domain.upper[a] - scene.domain.lower[a])
+        .fold(0.0, f64::max);
+    (extent <= 1.0).then_some(("mm", 1000.0))
+}
+
+fn totals() -> impl Iterator<Item = Row> {
+    let count = |name, source, text| Row::output(name, "", source, text).kind(ValueKind::Integer);
+    [
+        Row::output("mass.initial", "kg", Source::MassInitial, "mass at the start"),
+        Row::output("mass.inflow", "kg", Source::MassInflow, "mass that came in since the start"),
+        Row::output("mass.outflow", "kg", Source::MassOutflow, "mass that left since the start"),
+        Row::output("mass.present", "kg", Source::MassPresent, "mass present, summed over particles"),
+        Row::output("mass.error", "kg", Source::MassError, "initial + inflow - outflow - present: exactly 0"),
+        count("solver.steps", Source::Steps, "internal steps since the start"),
+        count("solver.iterations", Source::Iterations, "iterations of viscous solves since the start"),
+        Row::output("solver.step_size", "s", Source::StepSize, "last internal step").display(Some(("ms", 1000.0))),
+        count("solver.particles", Source::Particles, "particles present"),
+        Row::output("energy.kinetic", "J", Source::KineticEnergy, "kinetic energy of the material"),
+        Row::output(
+            "validity.share_dilute",
+            "1",
+            Source::ShareDilute,
+            "share of the mass with an inertial number above 0.3: outside the dense regime that the model is for",
+        )
+        .display(PERCENT),
+    ]
+    .into_iter()
+}
+
+/// Elements follow their array: now that rows have numbers, point each at its array and give values their place.
+fn number_elements(table: &mut VariableTable) {
+    let (mut array, mut end) = (0, 0);
+    for row in &mut table.rows {
+        match &mut row.element_of {
+            Some((of, k)) => {
+                *of = array;
+                table.offsets.push(table.offsets[array as usize] + *k);
+            }
+            None => {
+                array = row.reference;
+                table.offsets.push(end);
+                end += row.len();
+            }
+        }
+    }
+}
