@@ -1,6 +1,8 @@
 //! Sandgate: granular flow as a co-simulation component.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "bus")]
+pub mod bus;
 pub mod component;
 pub mod fmi;
 pub mod gauge;

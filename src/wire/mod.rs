@@ -13,4 +13,4 @@ pub mod messages;
 mod observer;
 
 pub use describe::{Described, DescribedEnum, Field, schema};
-pub use observer::Observer;
+pub use observer::{Both, Observer, Unobserved};

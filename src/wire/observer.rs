@@ -2,7 +2,7 @@
 //! bus through [`Observer`].
 
 use super::foxglove::LogLevel;
-use super::messages::Command;
+use super::messages::{AppliedEvent, Command};
 use crate::component::{Component, StepReport, ValueReference};
 
 /// Hears all traffic of a component, in the order in which it happens. Calls must return quickly; a failed write is
@@ -30,13 +30,62 @@ pub trait Observer: Send {
     fn on_reply(&mut self, reply: &Command);
 
     /// The component was reset or restored; its time may have gone back.
-    fn on_jump(
-        &mut self,
-        component: &Component,
-        event: super::messages::AppliedEvent,
-        source: &str,
-    );
+    fn on_jump(&mut self, component: &Component, event: AppliedEvent, source: &str);
 
     /// A line for people.
     fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str);
+}
+
+/// Two observers as one; the first one hears everything first.
+pub struct Both<'a>(pub &'a mut dyn Observer, pub &'a mut dyn Observer);
+
+impl Observer for Both<'_> {
+    fn on_initialize(&mut self, c: &Component, start: f64, stop: Option<f64>, source: &str) {
+        self.0.on_initialize(c, start, stop, source);
+        self.1.on_initialize(c, start, stop, source);
+    }
+    fn on_input(
+        &mut self,
+        c: &Component,
+        references: &[ValueReference],
+        values: &[f64],
+        source: &str,
+    ) {
+        self.0.on_input(c, references, values, source);
+        self.1.on_input(c, references, values, source);
+    }
+    fn on_step(&mut self, c: &Component, report: &StepReport, t: f64, h: f64, source: &str) {
+        self.0.on_step(c, report, t, h, source);
+        self.1.on_step(c, report, t, h, source);
+    }
+    fn on_command(&mut self, command: &Command) {
+        self.0.on_command(command);
+        self.1.on_command(command);
+    }
+    fn on_reply(&mut self, reply: &Command) {
+        self.0.on_reply(reply);
+        self.1.on_reply(reply);
+    }
+    fn on_jump(&mut self, c: &Component, event: AppliedEvent, source: &str) {
+        self.0.on_jump(c, event, source);
+        self.1.on_jump(c, event, source);
+    }
+    fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str) {
+        self.0.on_log(time, level, name, message);
+        self.1.on_log(time, level, name, message);
+    }
+}
+
+/// Hears nothing: for serving without a log.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unobserved;
+
+impl Observer for Unobserved {
+    fn on_initialize(&mut self, _: &Component, _: f64, _: Option<f64>, _: &str) {}
+    fn on_input(&mut self, _: &Component, _: &[ValueReference], _: &[f64], _: &str) {}
+    fn on_step(&mut self, _: &Component, _: &StepReport, _: f64, _: f64, _: &str) {}
+    fn on_command(&mut self, _: &Command) {}
+    fn on_reply(&mut self, _: &Command) {}
+    fn on_jump(&mut self, _: &Component, _: AppliedEvent, _: &str) {}
+    fn on_log(&mut self, _: f64, _: LogLevel, _: &str, _: &str) {}
 }

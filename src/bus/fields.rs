@@ -1,0 +1,161 @@
+//! Fields of requests: JSON values → checked values, or a refusal that names the field, what was found and what is
+//! allowed.
+
+use super::refusal::{Code, Refusal};
+use super::verb::Verb;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use serde_json::{Map, Value};
+
+pub(super) fn bad(message: String) -> Refusal {
+    Refusal::new(Code::BadRequest, message)
+}
+
+/// What a JSON value is, for messages.
+pub(super) fn kind(value: &Value) -> String {
+    match value {
+        Value::Null => "null".into(),
+        Value::Array(items) => format!("an array of {}", items.len()),
+        Value::Object(_) => "an object".into(),
+        Value::String(text) if text.len() > 40 => "a long string".into(),
+        plain => plain.to_string(),
+    }
+}
+
+pub(super) fn check(verb: Verb, map: &Map<String, Value>) -> Result<(), Refusal> {
+    let mut known = vec!["req", "client"];
+    known.extend(verb.fields());
+    match map.keys().find(|key| !known.contains(&key.as_str())) {
+        None => Ok(()),
+        Some(key) => Err(bad(format!(
+            "{}: unknown field {key:?}; it takes {}",
+            verb.name(),
+            known.join(", ")
+        ))),
+    }
+}
+
+fn wrong(field: &str, found: &Value, allowed: &str) -> Refusal {
+    Refusal::new(
+        Code::Type,
+        format!("{field}: found {}, allowed {allowed}", kind(found)),
+    )
+}
+
+pub(super) fn text(map: &mut Map<String, Value>, field: &str) -> Result<Option<String>, Refusal> {
+    let allowed = "a string of 1 to 64 characters";
+    match map.remove(field) {
+        None => Ok(None),
+        Some(Value::String(text)) if (1..=64).contains(&text.chars().count()) => Ok(Some(text)),
+        Some(other) => Err(wrong(field, &other, allowed)),
+    }
+}
+
+pub(super) fn whole(
+    map: &mut Map<String, Value>,
+    field: &str,
+    least: u64,
+    most: u64,
+) -> Result<Option<u64>, Refusal> {
+    let Some(value) = map.remove(field) else {
+        return Ok(None);
+    };
+    match value.as_u64() {
+        Some(n) if (least..=most).contains(&n) => Ok(Some(n)),
+        _ if value.is_number() && !value.is_f64() => Err(Refusal::new(
+            Code::Range,
+            format!("{field}: found {value}, allowed {least} to {most}"),
+        )),
+        _ => Err(wrong(field, &value, "a whole number")),
+    }
+}
+
+pub(super) fn time(map: &mut Map<String, Value>) -> Result<Option<i64>, Refusal> {
+    match map.remove("t_ns") {
+        None => Ok(None),
+        Some(value) => value
+            .as_i64()
+            .map(Some)
+            .ok_or_else(|| wrong("t_ns", &value, "a whole number of nanoseconds")),
+    }
+}
+
+pub(super) fn factor(map: &mut Map<String, Value>) -> Result<Option<f64>, Refusal> {
+    match map.remove("realtime_factor") {
+        None => Ok(None),
+        Some(value) => match value.as_f64() {
+            Some(factor) if factor > 0.0 => Ok(Some(factor)),
+            Some(_) => Err(Refusal::new(
+                Code::Range,
+                format!(
+                    "realtime_factor: found {value}, allowed more than 0; leave it out to run as fast as possible"
+                ),
+            )),
+            None => Err(wrong("realtime_factor", &value, "a number")),
+        },
+    }
+}
+
+pub(super) fn outputs(map: &mut Map<String, Value>) -> Result<Option<Vec<String>>, Refusal> {
+    let allowed = "an array of names of variables";
+    match map.remove("outputs") {
+        None => Ok(None),
+        Some(Value::Array(items)) => items
+            .into_iter()
+            .map(|item| match item {
+                Value::String(name) => Ok(name),
+                other => Err(wrong("outputs", &other, allowed)),
+            })
+            .collect::<Result<_, _>>()
+            .map(Some),
+        Some(other) => Err(wrong("outputs", &other, allowed)),
+    }
+}
+
+pub(super) fn inputs(map: &mut Map<String, Value>) -> Result<Vec<(String, Vec<f64>)>, Refusal> {
+    match map.remove("inputs") {
+        None => Ok(Vec::new()),
+        Some(Value::Object(entries)) => entries
+            .into_iter()
+            .map(|(name, value)| values(&name, &value).map(|flat| (name, flat)))
+            .collect(),
+        Some(other) => Err(wrong(
+            "inputs",
+            &other,
+            "an object such as {\"gate.main.opening\":0.5}",
+        )),
+    }
+}
+
+/// The flat values of an input: a number, true or false, or an array of these.
+pub(super) fn values(name: &str, value: &Value) -> Result<Vec<f64>, Refusal> {
+    let scalar = |value: &Value| match value {
+        Value::Bool(x) => Some(f64::from(u8::from(*x))),
+        other => other.as_f64(),
+    };
+    let allowed = "a number, true, false, or an array of these";
+    match value {
+        Value::Array(items) => items
+            .iter()
+            .map(|item| scalar(item).ok_or_else(|| wrong(name, item, allowed)))
+            .collect(),
+        plain => scalar(plain)
+            .map(|x| vec![x])
+            .ok_or_else(|| wrong(name, plain, allowed)),
+    }
+}
+
+pub(super) fn state(map: &mut Map<String, Value>) -> Result<Vec<u8>, Refusal> {
+    match map.remove("state") {
+        None => Ok(Vec::new()),
+        Some(Value::String(text)) => BASE64
+            .decode(&text)
+            .map_err(|error| bad(format!("state: {error}; send the string that save gave"))),
+        Some(other) => Err(wrong("state", &other, "the string that save gave")),
+    }
+}
+
+/// A state as `save` gives it and `restore` takes it.
+pub(super) fn state_text(state: &[u8]) -> String {
+    BASE64.encode(state)
+}

@@ -1,0 +1,219 @@
+//! What happens to a component → messages for publication, handed to the publishing thread's bounded queue.
+//!
+//! An [`Observer`] like the log: it runs on the stepping thread, so it never waits. If the queue is full, the whole
+//! batch is dropped and counted; sequence numbers go on, so that a subscriber sees the gap. Does not know Zenoh.
+
+use super::status::{Shared, lock};
+use crate::component::{Component, StepReport, ValueReference};
+use crate::wire::convert::{self, Output};
+use crate::wire::foxglove::{FrameTransform, Log, LogLevel, PointCloud};
+use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Command, Gauge, StepStats};
+use crate::wire::{Described, Observer, keys};
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, Mutex};
+
+/// Batches that may wait for the publishing thread; one batch a communication step.
+pub(super) const WAITING_BATCHES: usize = 256;
+
+/// Something to publish.
+#[derive(Clone, Debug)]
+pub(super) struct Publication {
+    pub(super) key: Arc<str>,
+    /// Name of the protobuf message: `sandgate.Gauge`.
+    pub(super) schema: &'static str,
+    pub(super) bytes: Arc<Vec<u8>>,
+}
+
+/// The last publication at each key, for those who come late.
+pub(super) type LastValues = Mutex<BTreeMap<Arc<str>, Publication>>;
+
+/// Makes publications.
+pub(super) struct Publisher {
+    base: String,
+    outputs: Vec<(Arc<str>, Output)>,
+    pending: Vec<AppliedInput>,
+    /// Counts batches: every output is published once a batch.
+    sequence: u64,
+    queue: SyncSender<Vec<Publication>>,
+    last: Arc<LastValues>,
+    particles_wanted: Arc<AtomicBool>,
+    shared: Arc<Shared>,
+}
+
+impl Publisher {
+    pub(super) fn new(
+        base: &str,
+        component: &Component,
+        queue: SyncSender<Vec<Publication>>,
+        last: Arc<LastValues>,
+        particles_wanted: Arc<AtomicBool>,
+        shared: Arc<Shared>,
+    ) -> Self {
+        let outputs = convert::outputs(component.variables())
+            .into_iter()
+            .map(|output| (keys::output(base, &output.name).into(), output))
+            .collect();
+        Self {
+            base: base.to_owned(),
+            outputs,
+            pending: Vec::new(),
+            sequence: 0,
+            queue,
+            last,
+            particles_wanted,
+            shared,
+        }
+    }
+
+    /// Remembers the batch for those who come late, and hands it on.
+    fn send(&self, batch: Vec<Publication>) {
+        let mut last = lock(&self.last);
+        for publication in &batch {
+            last.insert(publication.key.clone(), publication.clone());
+        }
+        drop(last);
+        let count = batch.len() as u64;
+        if self.queue.try_send(batch).is_err() {
+            self.shared.dropped_publications.fetch_add(count, Relaxed);
+        }
+    }
+
+    /// All outputs, the figures of the solver, where the gates are, and the particles if somebody wants them.
+    fn outputs(&mut self, component: &Component, report: Option<&StepReport>) -> Vec<Publication> {
+        let step = component.statistics().communication_steps;
+        let sequence = self.sequence;
+        self.sequence += 1;
+        let mut batch: Vec<_> = self
+            .outputs
+            .iter()
+            // The outputs are those of this component's own table, so that reading them cannot fail.
+            .filter_map(|(key, output)| {
+                let gauge: Gauge = convert::gauge(component, output, step, sequence).ok()?;
+                Some(publication(key.clone(), &gauge))
+            })
+            .collect();
+        let stats: StepStats = convert::step_stats(component, report, sequence);
+        batch.push(publication(keys::stats(&self.base).into(), &stats));
+        for frame in convert::gate_frames(component).unwrap_or_default() {
+            let frame: FrameTransform = frame;
+            batch.push(publication(keys::frames(&self.base).into(), &frame));
+        }
+        if self.particles_wanted.load(Relaxed) {
+            let cloud: PointCloud = convert::point_cloud(component);
+            batch.push(publication(keys::particles(&self.base).into(), &cloud));
+        }
+        batch
+    }
+
+    fn applied(
+        &mut self,
+        event: AppliedEvent,
+        step: u64,
+        t: f64,
+        h: f64,
+        source: &str,
+    ) -> Publication {
+        let message = Applied {
+            timestamp: Some(convert::timestamp(t)),
+            event: event as i32,
+            step,
+            t_bits: t.to_bits(),
+            h_bits: h.to_bits(),
+            t,
+            h,
+            inputs: std::mem::take(&mut self.pending),
+            source: source.to_owned(),
+        };
+        publication(keys::applied(&self.base).into(), &message)
+    }
+}
+
+fn publication<M: prost::Message + Described>(key: Arc<str>, message: &M) -> Publication {
+    Publication {
+        key,
+        schema: M::FULL_NAME,
+        bytes: Arc::new(message.encode_to_vec()),
+    }
+}
+
+impl Observer for Publisher {
+    fn on_initialize(
+        &mut self,
+        component: &Component,
+        start: f64,
+        stop: Option<f64>,
+        source: &str,
+    ) {
+        let event = AppliedEvent::Initialize;
+        let applied = self.applied(event, 0, start, stop.unwrap_or(f64::NAN), source);
+        let mut batch = self.outputs(component, None);
+        batch.insert(0, applied);
+        self.send(batch);
+    }
+
+    fn on_input(
+        &mut self,
+        component: &Component,
+        references: &[ValueReference],
+        values: &[f64],
+        source: &str,
+    ) {
+        let mut rest = values;
+        for &reference in references {
+            let Some(variable) = component.variables().by_reference(reference) else {
+                continue;
+            };
+            let (mine, others) = rest.split_at(variable.len().min(rest.len()));
+            rest = others;
+            self.pending.push(AppliedInput {
+                reference,
+                name: variable.name.clone(),
+                bits: mine.iter().map(|x| x.to_bits()).collect(),
+                values: mine.to_vec(),
+                source: source.to_owned(),
+            });
+        }
+    }
+
+    fn on_step(
+        &mut self,
+        component: &Component,
+        report: &StepReport,
+        t: f64,
+        h: f64,
+        source: &str,
+    ) {
+        let step = component.statistics().communication_steps;
+        let applied = self.applied(AppliedEvent::Step, step, t, h, source);
+        let mut batch = self.outputs(component, Some(report));
+        batch.insert(0, applied);
+        self.send(batch);
+    }
+
+    fn on_command(&mut self, _: &Command) {}
+
+    fn on_reply(&mut self, _: &Command) {}
+
+    fn on_jump(&mut self, component: &Component, event: AppliedEvent, source: &str) {
+        self.pending.clear();
+        let step = component.statistics().communication_steps;
+        let applied = self.applied(event, step, component.time(), f64::NAN, source);
+        let mut batch = self.outputs(component, None);
+        batch.insert(0, applied);
+        self.send(batch);
+    }
+
+    fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str) {
+        let line = Log {
+            timestamp: Some(convert::timestamp(time)),
+            level: level as i32,
+            message: message.to_owned(),
+            name: name.to_owned(),
+            file: String::new(),
+            line: 0,
+        };
+        self.send(vec![publication(keys::log(&self.base).into(), &line)]);
+    }
+}

@@ -1,0 +1,211 @@
+//! The callbacks. They run on Zenoh's threads: they check, hand on to bounded queues, and never wait.
+
+use super::failed;
+use super::replies::{Job, Waiting, ended};
+use crate::bus::error::BusError;
+use crate::bus::keys::Keys;
+use crate::bus::refusal::{Code, Refusal};
+use crate::bus::reply::Reply;
+use crate::bus::request::Request;
+use crate::bus::set_point::SetPoint;
+use crate::bus::status::Shared;
+use crate::bus::stepping::{Exchange, Note, Task, WAITING_SET_POINTS, WAITING_TASKS};
+use crate::bus::verb::Verb;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::mpsc::{SyncSender, TrySendError};
+use zenoh::liveliness::LivelinessToken;
+use zenoh::pubsub::Subscriber;
+use zenoh::query::{Query, Queryable};
+use zenoh::sample::{Sample, SampleKind};
+use zenoh::{Session, Wait as _};
+
+/// What lets others in; dropped first when the server ends.
+pub(super) struct Entrances {
+    _alive: LivelinessToken,
+    _requests: Queryable<()>,
+    _inputs: Subscriber<()>,
+    _outputs: Queryable<()>,
+}
+
+impl Entrances {
+    pub(super) fn open(session: &Session, desk: Desk) -> Result<Self, BusError> {
+        let desk = Arc::new(desk);
+        let (at_requests, at_inputs, at_outputs) = (desk.clone(), desk.clone(), desk.clone());
+        let requests = session
+            .declare_queryable(desk.keys.every_request())
+            .callback(move |query| at_requests.on_request(query))
+            .wait()
+            .map_err(failed("answer requests"))?;
+        let inputs = session
+            .declare_subscriber(desk.keys.every_input())
+            .callback(move |sample| at_inputs.on_input(&sample))
+            .wait()
+            .map_err(failed("listen to set-points"))?;
+        let outputs = session
+            .declare_queryable(desk.keys.every_output())
+            .callback(move |query| at_outputs.on_output(query))
+            .wait()
+            .map_err(failed("answer for last values"))?;
+        // Last, so that who sees the token can ask.
+        let alive = session
+            .liveliness()
+            .declare_token(desk.keys.alive())
+            .wait()
+            .map_err(failed("declare the liveliness token"))?;
+        Ok(Self {
+            _alive: alive,
+            _requests: requests,
+            _inputs: inputs,
+            _outputs: outputs,
+        })
+    }
+}
+
+/// What the callbacks need.
+pub(super) struct Desk {
+    pub(super) keys: Keys,
+    pub(super) shared: Arc<Shared>,
+    pub(super) tasks: SyncSender<Task>,
+    pub(super) notes: SyncSender<Note>,
+    pub(super) jobs: SyncSender<Job>,
+}
+
+impl Desk {
+    fn on_request(&self, query: Query) {
+        let key = query.key_expr().as_str().to_owned();
+        let bytes = query.payload().map(|p| p.to_bytes()).unwrap_or_default();
+        let read = self.keys.verb_of(&key).and_then(|name| {
+            no_parameters(&query)?;
+            Request::parse(Verb::from_name(name)?, &bytes)
+        });
+        let body = String::from_utf8_lossy(&bytes).into_owned();
+        let exact = !key.contains(['*', '$']);
+        let verb = key.rsplit('/').next().unwrap_or_default().to_owned();
+        let mut waiting = Waiting {
+            query: Some(query.clone()),
+            key: exact.then_some(key),
+            req: String::new(),
+            shared: self.shared.clone(),
+            jobs: self.jobs.clone(),
+        };
+        let request = match read {
+            Ok(request) => request,
+            Err(refusal) => {
+                waiting.req = Request::req_of(&bytes);
+                let reply = Reply::refusal(&waiting.req, &refusal, &self.shared.status());
+                let (req, client) = (waiting.req.clone(), String::new());
+                return self.answer_here(waiting, reply, [verb, req, client, body]);
+            }
+        };
+        waiting.req.clone_from(&request.req);
+        let names = [verb, request.req.clone(), request.client.clone(), body];
+        if request.verb == Verb::Status {
+            let status = self.shared.status();
+            let mut fields = status.figures();
+            fields.extend(self.shared.live());
+            let reply = Reply::success(&request.req, &status, fields);
+            return self.answer_here(waiting, reply, names);
+        }
+        let [.., body] = names.clone();
+        let task = Task::Call {
+            request,
+            body,
+            asked: Box::new(waiting),
+        };
+        let (refusal, task) = match self.tasks.try_send(task) {
+            Ok(()) => return,
+            Err(TrySendError::Full(task)) => (
+                Refusal::new(
+                    Code::Busy,
+                    format!(
+                        "{WAITING_TASKS} tasks wait already; nothing happened; send it again later"
+                    ),
+                ),
+                task,
+            ),
+            Err(TrySendError::Disconnected(task)) => (ended(), task),
+        };
+        if let Task::Call { request, asked, .. } = task {
+            let reply = Reply::refusal(&request.req, &refusal, &self.shared.status());
+            self.note(&reply, names);
+            asked.answer(reply);
+        }
+    }
+
+    /// Answers without the component.
+    fn answer_here(&self, waiting: Waiting, reply: Reply, names: [String; 4]) {
+        self.note(&reply, names);
+        waiting.hand_on(reply);
+    }
+
+    fn note(&self, reply: &Reply, [verb, req, client, body]: [String; 4]) {
+        let exchange = Exchange {
+            verb,
+            req,
+            client,
+            body,
+            status: reply.status(),
+            reply: reply.body.clone(),
+        };
+        if self.notes.try_send(Note::Call(exchange)).is_err() {
+            self.shared.unlogged_calls.fetch_add(1, Relaxed);
+        }
+    }
+
+    fn on_input(&self, sample: &Sample) {
+        let key = sample.key_expr().as_str();
+        let read = self.keys.variable_of(key).and_then(|variable| {
+            if sample.kind() == SampleKind::Delete {
+                let message = format!("{variable}: found a delete, allowed a value");
+                return Err(Refusal::new(Code::BadRequest, message));
+            }
+            SetPoint::parse(variable, &sample.payload().to_bytes())
+        });
+        let handed_on = read.and_then(|point| {
+            let waiting = &self.shared.waiting_set_points;
+            if waiting.fetch_add(1, Relaxed) < WAITING_SET_POINTS
+                && self.tasks.try_send(Task::SetPoint(point)).is_ok()
+            {
+                return Ok(());
+            }
+            waiting.fetch_sub(1, Relaxed);
+            let message = format!("{key}: {WAITING_SET_POINTS} set-points wait already");
+            Err(Refusal::new(Code::Busy, message))
+        });
+        if let Err(refusal) = handed_on {
+            self.shared.refused_set_points.fetch_add(1, Relaxed);
+            let note = Note::Refused(format!("set-point refused: {refusal}"));
+            if self.notes.try_send(note).is_err() {
+                self.shared.unlogged_calls.fetch_add(1, Relaxed);
+            }
+        }
+    }
+
+    fn on_output(&self, query: Query) {
+        let waiting = Waiting {
+            query: Some(query),
+            key: None,
+            req: String::new(),
+            shared: self.shared.clone(),
+            jobs: self.jobs.clone(),
+        };
+        // If the queue is full or gone, the job is dropped here, which answers.
+        let _ = self.jobs.try_send(Job::LastValues(waiting));
+    }
+}
+
+/// Parameters after `?` would be silently ignored; those of Zenoh itself begin with an underscore.
+fn no_parameters(query: &Query) -> Result<(), Refusal> {
+    match query
+        .parameters()
+        .iter()
+        .find(|(name, _)| !name.starts_with('_'))
+    {
+        None => Ok(()),
+        Some((name, _)) => Err(Refusal::new(
+            Code::BadRequest,
+            format!("found parameter {name:?} after ?; a request is a JSON object in the payload"),
+        )),
+    }
+}

@@ -1,0 +1,170 @@
+//! The server: a Zenoh session, its callbacks and its threads. The only folder that names `zenoh`.
+//!
+//! Callbacks only check and hand on to bounded queues. One thread (the caller's) steps the component, one sends
+//! replies, one publishes; a subscriber that stands still can hold up publications, never a step or a reply. Every
+//! query is answered exactly once, also when a thread panics or the server ends ([`Waiting`]).
+
+mod desk;
+mod press;
+mod replies;
+mod session;
+
+use self::desk::{Desk, Entrances};
+use self::press::Press;
+use self::replies::send_replies;
+use super::error::BusError;
+use super::keys::Keys;
+use super::protocol::Protocol;
+use super::publish::{LastValues, Publisher, WAITING_BATCHES};
+use super::status::Shared;
+use super::stepping::{Note, Stepper, Task, WAITING_NOTES, WAITING_TASKS};
+use crate::component::Component;
+use crate::wire::{Both, Observer};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread::JoinHandle;
+use zenoh::{Session, Wait as _};
+
+/// Replies that may wait to be sent.
+const WAITING_REPLIES: usize = 1024;
+/// How to serve.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ServeOptions {
+    /// Name of the instance, 1 to 64 of `a-z 0-9 _ -`.
+    pub instance: String,
+    /// Endpoints to listen on (`tcp/HOST:PORT`, port 0 for a free one); empty: those of the configuration file, or
+    /// [`DEFAULT_LISTEN`].
+    pub listen: Vec<String>,
+    /// Endpoints to connect to, besides those of the configuration file.
+    pub connect: Vec<String>,
+    /// Zenoh's configuration (JSON5). Scouting and the admin space stay off whatever it says.
+    pub config_file: Option<PathBuf>,
+    /// Whether other machines may reach a listener.
+    pub allow_open_listener: bool,
+    /// Simulated over wall time to step by itself (infinite: as fast as possible); none to wait for `step`.
+    pub realtime_factor: Option<f64>,
+}
+
+/// An open server.
+pub struct Server {
+    session: Session,
+    listeners: Vec<String>,
+    component: Component,
+    protocol: Protocol,
+    publisher: Publisher,
+    shared: Arc<Shared>,
+    tasks: Receiver<Task>,
+    notes: Receiver<Note>,
+    entrances: Entrances,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Server {
+    /// Opens the session, brings the component to its first communication point if it was only built, and lets others
+    /// in: their requests wait until [`Server::run`].
+    ///
+    /// # Errors
+    /// [`BusError`]: name, endpoints, configuration file, ports in use, name taken, threads.
+    pub fn open(
+        mut component: Component,
+        options: &ServeOptions,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, BusError> {
+        let keys = Keys::new(&options.instance)?;
+        let (session, listeners) = session::open(options)?;
+        session::refuse_twin(&session, &keys, options)?;
+        let mut protocol = Protocol::new(keys.base(), options.realtime_factor);
+
+        let (batches, publications) = sync_channel(WAITING_BATCHES);
+        let (jobs, replies) = sync_channel(WAITING_REPLIES);
+        let (task_queue, tasks) = sync_channel(WAITING_TASKS);
+        let (note_queue, notes) = sync_channel(WAITING_NOTES);
+        let last = Arc::new(LastValues::default());
+        let particles_wanted = Arc::new(AtomicBool::new(false));
+        let shared = Arc::new(Shared::new(protocol.status(&component)));
+        let mut publisher = Publisher::new(
+            keys.base(),
+            &component,
+            batches,
+            last.clone(),
+            particles_wanted.clone(),
+            shared.clone(),
+        );
+        let press = Press::new(session.clone(), &keys, particles_wanted)?;
+        let threads = vec![
+            spawn("sandgate-publish", move || press.run(&publications))?,
+            spawn("sandgate-reply", move || send_replies(&replies, &last))?,
+        ];
+        protocol.begin(&mut component, &mut Both(observer, &mut publisher), "serve")?;
+        shared.update(protocol.status(&component));
+        let desk = Desk {
+            keys,
+            shared: shared.clone(),
+            tasks: task_queue,
+            notes: note_queue,
+            jobs,
+        };
+        Ok(Self {
+            entrances: Entrances::open(&session, desk)?,
+            session,
+            listeners,
+            component,
+            protocol,
+            publisher,
+            shared,
+            tasks,
+            notes,
+            threads,
+        })
+    }
+
+    /// Where clients connect to, with real ports: `tcp/127.0.0.1:40123`.
+    #[must_use]
+    pub fn listeners(&self) -> &[String] {
+        &self.listeners
+    }
+
+    /// Serves on the calling thread until `stop` is set or a client sends `terminate`. `observer` hears all traffic.
+    ///
+    /// # Errors
+    /// [`BusError::Zenoh`] if the session could not be closed.
+    pub fn run(mut self, observer: &mut dyn Observer, stop: &AtomicBool) -> Result<(), BusError> {
+        let mut stepper = Stepper {
+            component: self.component,
+            protocol: self.protocol,
+            shared: &self.shared,
+            tasks: self.tasks,
+            notes: self.notes,
+        };
+        stepper.run(&mut Both(observer, &mut self.publisher), stop);
+        // Nobody gets in any more; who still waits is answered as the queue is dropped; then the queues of the two
+        // threads have no senders left, and they end when they are empty.
+        drop(self.entrances);
+        drop(stepper);
+        drop(self.publisher);
+        for thread in self.threads {
+            // A panic there was reported by the thread itself, and who waited was answered.
+            let _ = thread.join();
+        }
+        self.session
+            .close()
+            .wait()
+            .map_err(failed("close the session"))
+    }
+}
+
+fn failed<E: std::fmt::Display>(doing: &'static str) -> impl FnOnce(E) -> BusError {
+    move |error| BusError::Zenoh {
+        doing: doing.to_owned(),
+        reason: error.to_string(),
+    }
+}
+
+fn spawn(name: &str, body: impl FnOnce() + Send + 'static) -> Result<JoinHandle<()>, BusError> {
+    std::thread::Builder::new()
+        .name(name.to_owned())
+        .spawn(body)
+        .map_err(|error| BusError::Thread(error.to_string()))
+}

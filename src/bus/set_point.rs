@@ -1,0 +1,82 @@
+//! Set-points as typed: what is published to `B/in/VARIABLE`.
+
+use super::fields::{bad, text, values};
+use super::json;
+use super::refusal::{Code, Refusal};
+use serde_json::Value;
+
+/// A set-point: a value, or `{"value": ..., "client": "..."}` to say who sent it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetPoint {
+    /// Variable's name.
+    pub variable: String,
+    /// Flat values.
+    pub values: Vec<f64>,
+    /// Who sent it; may be empty.
+    pub client: String,
+}
+
+impl SetPoint {
+    /// Reads a set-point.
+    ///
+    /// # Errors
+    /// As [`Request::parse`].
+    pub fn parse(variable: &str, body: &[u8]) -> Result<Self, Refusal> {
+        if body.len() > 1 << 20 {
+            return Err(Refusal::new(
+                Code::TooLarge,
+                format!(
+                    "{variable}: found a body of {} bytes, allowed {}",
+                    body.len(),
+                    1 << 20
+                ),
+            ));
+        }
+        let value = json::parse(body)
+            .map_err(|error| bad(format!("{variable}: set-point is not JSON: {error}")))?;
+        let (value, client) = match value {
+            Value::Object(mut map) => {
+                if let Some(key) = map.keys().find(|key| *key != "value" && *key != "client") {
+                    return Err(bad(format!(
+                        "{variable}: unknown field {key:?}; a set-point takes value, client"
+                    )));
+                }
+                let client = text(&mut map, "client")?.unwrap_or_default();
+                match map.remove("value") {
+                    Some(value) => (value, client),
+                    None => return Err(bad(format!("{variable}: missing \"value\""))),
+                }
+            }
+            value => (value, String::new()),
+        };
+        Ok(Self {
+            variable: variable.to_owned(),
+            values: values(variable, &value)?,
+            client,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn set_points_are_values_with_or_without_a_sender() {
+        let read = |body: &str| SetPoint::parse("v", body.as_bytes());
+        assert_eq!(read("0.5").unwrap().values, [0.5]);
+        assert_eq!(read("[1,true]").unwrap().values, [1.0, 1.0]);
+        let sent = read(r#"{"value":0.25,"client":"plc"}"#).unwrap();
+        assert_eq!((sent.values, sent.client.as_str()), (vec![0.25], "plc"));
+        for (body, code) in [
+            ("NaN", Code::BadRequest),
+            ("", Code::BadRequest),
+            ("\"open\"", Code::Type),
+            ("null", Code::Type),
+            ("{}", Code::BadRequest),
+            (r#"{"value":1,"who":"x"}"#, Code::BadRequest),
+        ] {
+            assert_eq!(read(body).unwrap_err().code, code, "{body}");
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Names and JSON values ⇄ references and flat values of the variables table. The only part of the bus that reads the
+//! table's rows.
+
+use super::json::number;
+use super::refusal::{Code, Refusal};
+use crate::component::{
+    self, Causality, Component, Start, ValueKind, ValueReference, Variability, Variable,
+    VariableTable,
+};
+use serde_json::{Map, Value, json};
+
+/// Inputs of one request, ready for [`Component::set`].
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Assignment {
+    /// One reference an input.
+    pub(super) references: Vec<ValueReference>,
+    /// All values, one input after the other.
+    pub(super) values: Vec<f64>,
+}
+
+impl Assignment {
+    /// Finds the variables and checks lengths. Ranges and modes are the component's business.
+    pub(super) fn resolve(
+        table: &VariableTable,
+        inputs: &[(String, Vec<f64>)],
+    ) -> Result<Self, Refusal> {
+        let mut assignment = Self::default();
+        for (name, values) in inputs {
+            let variable = find(table, name, |v| {
+                matches!(v.causality, Causality::Input | Causality::Parameter)
+            })?;
+            if values.len() != variable.len() {
+                return Err(Refusal::new(
+                    Code::Type,
+                    format!(
+                        "{name}: found {} value(s), allowed {}",
+                        values.len(),
+                        variable.len()
+                    ),
+                ));
+            }
+            assignment.references.push(variable.reference);
+            assignment.values.extend(values);
+        }
+        Ok(assignment)
+    }
+
+    /// What these variables hold now.
+    pub(super) fn present(&self, component: &Component) -> Result<Self, component::Error> {
+        let mut values = vec![0.0; self.values.len()];
+        component.get(&self.references, &mut values)?;
+        Ok(Self {
+            references: self.references.clone(),
+            values,
+        })
+    }
+}
+
+/// The rows that a request names; all (arrays whole, not their elements) if it names none.
+pub(super) fn rows<'t>(
+    table: &'t VariableTable,
+    names: Option<&[String]>,
+) -> Result<Vec<&'t Variable>, Refusal> {
+    match names {
+        Some(names) => names
+            .iter()
+            .map(|name| find(table, name, |_| true))
+            .collect(),
+        None => Ok(table
+            .rows()
+            .iter()
+            .filter(|v| v.element_of.is_none())
+            .collect()),
+    }
+}
+
+/// Present values by name.
+pub(super) fn read(
+    component: &Component,
+    rows: &[&Variable],
+) -> Result<Map<String, Value>, component::Error> {
+    rows.iter()
+        .map(|variable| {
+            let mut flat = vec![0.0; variable.len()];
+            component.get(&[variable.reference], &mut flat)?;
+            Ok((variable.name.clone(), show(variable, &flat)))
+        })
+        .collect()
+}
+
+/// The table as JSON: what a client needs to know before it sets or reads anything.
+pub(super) fn describe(table: &VariableTable) -> Value {
+    let describe_one = |v: &Variable| {
+        json!({
+            "name": v.name,
+            "reference": v.reference,
+            "description": v.description,
+            "causality": match v.causality {
+                Causality::Independent => "independent",
+                Causality::Parameter => "parameter",
+                Causality::Input => "input",
+                Causality::Output => "output",
+            },
+            "variability": match v.variability {
+                Variability::Fixed => "fixed",
+                Variability::Tunable => "tunable",
+                Variability::Discrete => "discrete",
+                Variability::Continuous => "continuous",
+            },
+            "kind": match v.kind {
+                ValueKind::Real => "real",
+                ValueKind::Integer => "integer",
+                ValueKind::Boolean => "boolean",
+            },
+            "unit": v.unit,
+            "shape": v.shape,
+            "start": match &v.start {
+                Start::Exact(values) => show(v, values),
+                Start::Calculated => Value::Null,
+            },
+            "min": v.range.map_or(Value::Null, |(min, _)| number(min)),
+            "max": v.range.map_or(Value::Null, |(_, max)| number(max)),
+        })
+    };
+    table
+        .rows()
+        .iter()
+        .filter(|v| v.element_of.is_none())
+        .map(describe_one)
+        .collect()
+}
+
+fn show(variable: &Variable, flat: &[f64]) -> Value {
+    let one = |x: f64| match variable.kind {
+        ValueKind::Boolean => Value::Bool(x != 0.0),
+        // Whole numbers up to 2^53 are exact in f64.
+        ValueKind::Integer if x.fract() == 0.0 && x.abs() <= 9_007_199_254_740_992.0 => {
+            Value::from(x as i64)
+        }
+        _ => number(x),
+    };
+    match flat {
+        [x] if variable.shape.is_empty() => one(*x),
+        _ => flat.iter().copied().map(one).collect(),
+    }
+}
+
+fn find<'t>(
+    table: &'t VariableTable,
+    name: &str,
+    wanted: impl Fn(&Variable) -> bool,
+) -> Result<&'t Variable, Refusal> {
+    table.by_name(name).ok_or_else(|| {
+        let known: Vec<_> = table
+            .rows()
+            .iter()
+            .filter(|v| v.element_of.is_none() && wanted(v))
+            .map(|v| v.name.as_str())
+            .collect();
+        let known = match known.as_slice() {
+            [] => "none here".to_owned(),
+            few => few.join(", "),
+        };
+        Refusal::new(
+            Code::UnknownVariable,
+            format!("unknown variable {name:?}; there are {known}"),
+        )
+    })
+}
