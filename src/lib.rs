@@ -7,6 +7,8 @@ pub mod component;
 pub mod fmi;
 pub mod gauge;
 pub mod material;
+#[cfg(feature = "record")]
+pub mod record;
 pub mod scene;
 pub mod shape;
 pub mod solver;

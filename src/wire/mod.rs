@@ -11,6 +11,7 @@ pub mod foxglove;
 pub mod keys;
 pub mod messages;
 mod observer;
+pub mod picture;
 
 pub use describe::{Described, DescribedEnum, Field, schema};
 pub use observer::{Both, Observer, Unobserved};

@@ -1,0 +1,110 @@
+//! What can go wrong with log files. Every message says what was found and what to do.
+
+use crate::component;
+use crate::wire::keys::BadInstance;
+use std::path::PathBuf;
+
+/// Errors of writing a log.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// A log or an unfinished log has that name.
+    #[error(
+        "log file {path} exists already and is not overwritten; choose another name or move it away"
+    )]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file cannot be created.
+    #[error("cannot create log file {path}: {source}; choose a folder that can be written")]
+    Create {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A write failed, and the run said that its log is required.
+    #[error("{0}; the scene says log.required, so the run stops")]
+    Required(Failure),
+    /// The finished file cannot get its name.
+    #[error("log is complete in {part} but cannot be renamed to {path}: {why}; rename it by hand")]
+    Rename {
+        /// Where it is.
+        part: PathBuf,
+        /// Where it should be.
+        path: PathBuf,
+        /// Why it is not.
+        why: String,
+    },
+    /// The instance's name cannot be used in topics.
+    #[error(transparent)]
+    Instance(#[from] BadInstance),
+    /// The component refused to be read.
+    #[error("cannot read the component for the log: {0}")]
+    Component(#[from] component::Error),
+}
+
+/// The first write that failed. After it nothing more is written, so that the file is a whole log up to a cut.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Failure {
+    /// Simulated time of the last message given to the log [s].
+    pub time: f64,
+    /// What the system said.
+    pub cause: String,
+    /// The file that holds what was written before, if there is one.
+    pub file: Option<PathBuf>,
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "log stopped at simulated time {} s: {}",
+            self.time, self.cause
+        )?;
+        if let Some(file) = &self.file {
+            write!(
+                f,
+                "; what was written before is in {}, make room and run again for a whole log",
+                file.display()
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Errors of reading a log. A log that was cut short is not an error: see [`Ending`](super::Ending).
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file cannot be read.
+    #[error("cannot read log {path}: {source}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file is something else.
+    #[error("{path} is not an MCAP file: it does not begin with the magic bytes \\x89MCAP0")]
+    NotALog {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A message is not what its channel says.
+    #[error(
+        "log {path}: message {sequence} of {topic} is not a {schema}: {why}; \
+         the file is damaged or of another version"
+    )]
+    Message {
+        /// The file.
+        path: PathBuf,
+        /// Its topic.
+        topic: String,
+        /// Its number on the channel.
+        sequence: u32,
+        /// What it should be.
+        schema: String,
+        /// What the decoder said.
+        why: String,
+    },
+}

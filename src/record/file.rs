@@ -1,0 +1,316 @@
+//! One MCAP file being written: channels, messages, flushing, and the latch of the first failure.
+//!
+//! It knows messages as bytes only; what they say is the business of `write`.
+//!
+//! Loss: with [`Pace::WallClock`] a thread brings everything to the system within [`FLUSH_AFTER`] plus [`LOOK_EVERY`],
+//! also while a step takes minutes; with [`Pace::Caller`] whatever came before the last [`LogFile::flush`] is safe and
+//! the bytes do not depend on any clock.
+
+use super::error::Failure;
+use super::sink::{Latch, Sink};
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use std::collections::BTreeMap;
+use std::io::BufWriter;
+use std::path::PathBuf;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// Age of the oldest message in memory at which it is written.
+const FLUSH_AFTER: Duration = Duration::from_millis(500);
+/// How often the thread looks.
+const LOOK_EVERY: Duration = Duration::from_millis(250);
+/// Bytes of a chunk at which it is closed without waiting for a flush; also the memory a log takes.
+const CHUNK_BYTES: u64 = 1 << 20;
+
+type Mcap = mcap::Writer<NoSeek<BufWriter<Latch>>>;
+
+/// Who decides when chunks are closed and written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pace {
+    /// A thread, by the clock.
+    WallClock,
+    /// Calls of [`LogFile::flush`].
+    Caller,
+}
+
+/// A channel's number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct ChannelId(u16);
+
+pub(super) struct LogFile {
+    shared: Arc<Shared>,
+    flusher: Option<JoinHandle<()>>,
+    path: Option<PathBuf>,
+}
+
+struct Shared {
+    state: Mutex<State>,
+    stop: Condvar,
+}
+
+struct State {
+    mcap: Option<Mcap>,
+    failure: Option<Failure>,
+    written: u64,
+    dropped: u64,
+    unflushed: u64,
+    dirty_since: Option<Instant>,
+    time: f64,
+    stopped: bool,
+}
+
+/// What became of the messages of a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Counts {
+    /// Messages in the file.
+    pub(super) written: u64,
+    /// Messages that are not, because a write failed.
+    pub(super) dropped: u64,
+}
+
+impl LogFile {
+    /// Starts a file: magic and header. `path` is for messages to people.
+    pub(super) fn start(sink: Box<dyn Sink>, path: Option<PathBuf>, pace: Pace) -> Self {
+        let buffered = BufWriter::with_capacity(1 << 16, Latch::new(sink));
+        let created = mcap::WriteOptions::new()
+            .compression(None)
+            .chunk_size(Some(CHUNK_BYTES))
+            .disable_seeking(true)
+            .profile("")
+            .library(concat!("sandgate ", env!("CARGO_PKG_VERSION")))
+            .create(NoSeek::new(buffered));
+        let mut state = State {
+            mcap: None,
+            failure: None,
+            written: 0,
+            dropped: 0,
+            unflushed: 0,
+            dirty_since: None,
+            time: 0.0,
+            stopped: false,
+        };
+        match created {
+            Ok(mcap) => state.mcap = Some(mcap),
+            Err(error) => state.fail(&error, path.as_ref()),
+        }
+        let shared = Arc::new(Shared {
+            state: Mutex::new(state),
+            stop: Condvar::new(),
+        });
+        let flusher = (pace == Pace::WallClock)
+            .then(|| spawn_flusher(Arc::clone(&shared), path.clone()))
+            .flatten();
+        Self {
+            shared,
+            flusher,
+            path,
+        }
+    }
+
+    /// Writes a metadata record; it stands before all later messages.
+    pub(super) fn metadata(&mut self, name: &str, values: BTreeMap<String, String>) {
+        let record = Metadata {
+            name: name.to_owned(),
+            metadata: values,
+        };
+        self.with(|mcap| mcap.write_metadata(&record));
+    }
+
+    /// Writes an attachment; `time` is simulated time in ns.
+    pub(super) fn attachment(&mut self, name: &str, media_type: &str, time: u64, data: &[u8]) {
+        let attachment = mcap::Attachment {
+            log_time: time,
+            create_time: time,
+            name: name.to_owned(),
+            media_type: media_type.to_owned(),
+            data: data.into(),
+        };
+        self.with(|mcap| mcap.attach(&attachment));
+    }
+
+    /// Adds a channel. After a failure the number means nothing and is not used.
+    pub(super) fn channel(
+        &mut self,
+        topic: &str,
+        (schema, descriptors): (&str, &[u8]),
+        metadata: &BTreeMap<String, String>,
+    ) -> ChannelId {
+        let added = self.with(|mcap| {
+            let schema = mcap.add_schema(schema, "protobuf", descriptors)?;
+            mcap.add_channel(schema, topic, "protobuf", metadata)
+        });
+        ChannelId(added.unwrap_or(0))
+    }
+
+    /// Adds a message. `time` is simulated time [s], the others as in MCAP.
+    pub(super) fn message(
+        &mut self,
+        time: f64,
+        channel: ChannelId,
+        sequence: u32,
+        (log_time, publish_time): (u64, u64),
+        data: &[u8],
+    ) {
+        let header = MessageHeader {
+            channel_id: channel.0,
+            sequence,
+            log_time,
+            publish_time,
+        };
+        let mut state = self.lock();
+        state.time = time;
+        if state.mcap.is_none() {
+            state.dropped += 1;
+            return;
+        }
+        state.written += 1;
+        state.unflushed += 1;
+        state.dirty_since.get_or_insert_with(Instant::now);
+        state.with(self.path.as_ref(), |mcap| {
+            mcap.write_to_known_channel(&header, data)
+        });
+    }
+
+    /// Closes the chunk and hands all bytes to the system.
+    pub(super) fn flush(&mut self) {
+        self.lock().flush(self.path.as_ref());
+    }
+
+    /// Writes the summary, brings everything to the disk and closes the file.
+    pub(super) fn finish(&mut self) -> (Counts, Option<Failure>) {
+        self.stop_flusher();
+        let path = self.path.clone();
+        let mut state = self.lock();
+        state.flush(path.as_ref());
+        state.with(path.as_ref(), |mcap| mcap.finish().map(drop));
+        if let Some(mcap) = state.mcap.take() {
+            let buffered = mcap.into_inner().into_inner();
+            let closed = buffered
+                .into_inner()
+                .map_err(std::io::IntoInnerError::into_error)
+                .and_then(|mut latch| latch.sync());
+            if let Err(error) = closed {
+                state.fail(&error.into(), path.as_ref());
+            }
+        }
+        let counts = Counts {
+            written: state.written,
+            dropped: state.dropped,
+        };
+        (counts, state.failure.clone())
+    }
+
+    /// The first failure, if there was one.
+    pub(super) fn failure(&self) -> Option<Failure> {
+        self.lock().failure.clone()
+    }
+
+    /// What became of the messages so far.
+    pub(super) fn counts(&self) -> Counts {
+        let state = self.lock();
+        Counts {
+            written: state.written,
+            dropped: state.dropped,
+        }
+    }
+
+    fn with<T>(&mut self, write: impl FnOnce(&mut Mcap) -> mcap::McapResult<T>) -> Option<T> {
+        let path = self.path.clone();
+        self.lock().with(path.as_ref(), write)
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        lock(&self.shared)
+    }
+
+    fn stop_flusher(&mut self) {
+        if let Some(flusher) = self.flusher.take() {
+            self.lock().stopped = true;
+            self.shared.stop.notify_all();
+            // The thread does not panic; if it did, its failure is latched in the state already.
+            let _ = flusher.join();
+        }
+    }
+}
+
+impl Drop for LogFile {
+    /// A file that was not finished (a panic, an early return) still gets its summary, but keeps its unfinished name.
+    fn drop(&mut self) {
+        self.stop_flusher();
+    }
+}
+
+impl State {
+    fn with<T>(
+        &mut self,
+        path: Option<&PathBuf>,
+        write: impl FnOnce(&mut Mcap) -> mcap::McapResult<T>,
+    ) -> Option<T> {
+        match write(self.mcap.as_mut()?) {
+            Ok(value) => Some(value),
+            Err(error) => {
+                self.fail(&error, path);
+                None
+            }
+        }
+    }
+
+    fn flush(&mut self, path: Option<&PathBuf>) {
+        if self.with(path, mcap::Writer::flush).is_some() {
+            self.unflushed = 0;
+            self.dirty_since = None;
+        }
+    }
+
+    /// Latches the first failure. Messages that were only in memory count as dropped.
+    fn fail(&mut self, error: &mcap::McapError, path: Option<&PathBuf>) {
+        if let Some(mcap) = self.mcap.take() {
+            // Taken apart rather than dropped: dropping would try to write a summary.
+            drop(mcap.into_inner());
+        }
+        self.dropped += self.unflushed;
+        self.written -= self.unflushed;
+        self.unflushed = 0;
+        self.dirty_since = None;
+        let cause = match error {
+            mcap::McapError::Io(io) => io.to_string(),
+            other => other.to_string(),
+        };
+        self.failure.get_or_insert(Failure {
+            time: self.time,
+            cause,
+            file: path.cloned(),
+        });
+    }
+}
+
+fn lock(shared: &Shared) -> MutexGuard<'_, State> {
+    // State is consistent between statements, so a panic elsewhere does not spoil it.
+    shared.state.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// None if the system has no thread to give: the log is then written by chunks only, which is still a log.
+fn spawn_flusher(shared: Arc<Shared>, path: Option<PathBuf>) -> Option<JoinHandle<()>> {
+    let flush_until_stopped = move || {
+        let mut state = lock(&shared);
+        while !state.stopped {
+            state = shared
+                .stop
+                .wait_timeout(state, LOOK_EVERY)
+                .unwrap_or_else(PoisonError::into_inner)
+                .0;
+            if state
+                .dirty_since
+                .is_some_and(|since| since.elapsed() >= FLUSH_AFTER)
+            {
+                state.flush(path.as_ref());
+            }
+        }
+    };
+    std::thread::Builder::new()
+        .name("sandgate-log".to_owned())
+        .spawn(flush_until_stopped)
+        .ok()
+}

@@ -1,0 +1,605 @@
+//! Writes a component's life to an MCAP file: what drove it, what came out, what was asked, and pictures.
+//!
+//! The recorder watches; it never changes the component, and a disk that is full does not stop the simulation unless
+//! the scene says that its log is required.
+
+use super::channels::{Channel, Channels};
+use super::error::{Failure, RecordError};
+use super::file::{LogFile, Pace};
+use super::sink::Sink;
+use crate::component::{Component, Mode, StepReport, ValueReference};
+use crate::wire::convert::{self, nanoseconds, timestamp};
+use crate::wire::foxglove::{Log, LogLevel};
+use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Command};
+use crate::wire::{keys, picture};
+use prost::Message;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// How a log is written.
+#[derive(Clone, Debug)]
+pub struct RecordOptions {
+    /// Instance in topics, 1 to 64 of `a-z 0-9 _ -`.
+    pub instance: String,
+    /// `publish_time` is simulated time and chunks are closed at communication points: two equal runs then give equal
+    /// bytes. Otherwise `publish_time` is the wall clock and everything is on disk within a second.
+    pub deterministic: bool,
+    /// A failed write is an error of the next call; otherwise the run goes on without its log.
+    pub required: bool,
+    /// Particle snapshots every so many seconds of simulated time, 0 for none [s].
+    pub particles_every: f64,
+    /// Why this file begins: "start", "resumed", "reset", "restored".
+    pub reason: String,
+    /// Files to carry along, such as modelDescription.xml: name, media type, bytes.
+    pub attachments: Vec<(String, String, Vec<u8>)>,
+}
+
+impl RecordOptions {
+    /// What the component's scene asks for: instance and snapshots from the scene, `publish_time` from the wall clock.
+    #[must_use]
+    pub fn of(component: &Component) -> Self {
+        let scene = component.scene();
+        Self {
+            instance: scene.name.clone(),
+            deterministic: false,
+            required: scene.log.required,
+            particles_every: scene.log.particles_every,
+            reason: "start".to_owned(),
+            attachments: Vec::new(),
+        }
+    }
+}
+
+/// What became of a log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    /// The file: under its final name if it is whole, else under the name that ends in `.part`.
+    pub path: Option<PathBuf>,
+    /// Messages in the file.
+    pub messages: u64,
+    /// Messages that are not in it because a write failed.
+    pub dropped: u64,
+    /// The first failure, if there was one.
+    pub failure: Option<Failure>,
+}
+
+/// Records one component. Made by [`Recorder::create`], ended by [`Recorder::finish`].
+pub struct Recorder {
+    pub(super) file: LogFile,
+    channels: Channels,
+    options: RecordOptions,
+    pub(super) place: Option<Place>,
+    pending: Vec<AppliedInput>,
+    first_time: f64,
+    /// Snapshots that were due so far.
+    snapshots: u64,
+    trouble: Option<RecordError>,
+}
+
+/// Names of a file.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    /// As given by the caller.
+    first: PathBuf,
+    /// Number of this file, from 0.
+    pub(super) segment: u32,
+}
+
+impl Place {
+    /// `run.mcap`, then `run-0001.mcap`, ...
+    fn path(&self) -> PathBuf {
+        if self.segment == 0 {
+            return self.first.clone();
+        }
+        let mut name = self.first.file_stem().unwrap_or_default().to_owned();
+        name.push(format!("-{:04}", self.segment));
+        if let Some(extension) = self.first.extension() {
+            name.push(".");
+            name.push(extension);
+        }
+        self.first.with_file_name(name)
+    }
+
+    /// The name until it is finished.
+    fn part(&self) -> PathBuf {
+        let mut name = self.path().into_os_string();
+        name.push(".part");
+        name.into()
+    }
+
+    fn create(&self) -> Result<std::fs::File, RecordError> {
+        let (path, part) = (self.path(), self.part());
+        if path.exists() {
+            return Err(RecordError::Exists { path });
+        }
+        std::fs::File::create_new(&part).map_err(|source| match source.kind() {
+            std::io::ErrorKind::AlreadyExists => RecordError::Exists { path: part },
+            _ => RecordError::Create { path: part, source },
+        })
+    }
+
+    fn rename(&self) -> Result<PathBuf, RecordError> {
+        let (path, part) = (self.path(), self.part());
+        let failed = |why: String| RecordError::Rename {
+            part: part.clone(),
+            path: path.clone(),
+            why,
+        };
+        if path.exists() {
+            return Err(failed("a file of that name appeared meanwhile".to_owned()));
+        }
+        std::fs::rename(&part, &path).map_err(|error| failed(error.to_string()))?;
+        Ok(path)
+    }
+}
+
+impl Recorder {
+    /// Starts `path` (written as `path.part` until it is finished): metadata of the run, the scene's text and, if the
+    /// component has been initialised already, its state, so that the file is whole without any other.
+    ///
+    /// # Errors
+    /// [`RecordError::Exists`], [`RecordError::Create`], [`RecordError::Instance`], [`RecordError::Component`];
+    /// [`RecordError::Required`] if the first bytes cannot be written.
+    pub fn create(
+        path: &Path,
+        component: &Component,
+        options: RecordOptions,
+    ) -> Result<Self, RecordError> {
+        let place = Place {
+            first: path.to_owned(),
+            segment: 0,
+        };
+        // Before the file is made, so that a bad name leaves none behind.
+        keys::base(keys::ROOT, &options.instance)?;
+        let sink = Box::new(place.create()?);
+        Self::start(sink, Some(place), component, options)
+    }
+
+    pub(super) fn start(
+        sink: Box<dyn Sink>,
+        place: Option<Place>,
+        component: &Component,
+        options: RecordOptions,
+    ) -> Result<Self, RecordError> {
+        let base = keys::base(keys::ROOT, &options.instance)?;
+        let pace = if options.deterministic {
+            Pace::Caller
+        } else {
+            Pace::WallClock
+        };
+        let segment = place.as_ref().map_or(0, |p| p.segment);
+        let mut file = LogFile::start(sink, place.as_ref().map(Place::part), pace);
+        write_preamble(&mut file, component, &options, segment)?;
+        let channels = Channels::add(&mut file, component, &base);
+        let mut recorder = Self {
+            file,
+            channels,
+            options,
+            place,
+            pending: Vec::new(),
+            first_time: component.time(),
+            snapshots: 0,
+            trouble: None,
+        };
+        recorder.scene(component);
+        if has_state(component) {
+            recorder.applied(
+                component,
+                AppliedEvent::Restore,
+                (component.time(), f64::NAN),
+                "",
+            );
+            recorder.outputs(component, None)?;
+        }
+        recorder.file.flush();
+        recorder.check()?;
+        Ok(recorder)
+    }
+
+    /// The component was initialised from `start`, with `stop` if one was set [s], by `source`. Inputs recorded before
+    /// belong to it.
+    ///
+    /// # Errors
+    /// [`RecordError::Required`], [`RecordError::Component`].
+    pub fn record_initialization(
+        &mut self,
+        component: &Component,
+        start: f64,
+        stop: Option<f64>,
+        source: &str,
+    ) -> Result<(), RecordError> {
+        self.first_time = start;
+        self.snapshots = 0;
+        let times = (start, stop.unwrap_or(f64::NAN));
+        self.applied(component, AppliedEvent::Initialize, times, source);
+        self.outputs(component, None)?;
+        self.end_of_step()
+    }
+
+    /// Variables were set by `source` and accepted: they take effect in the step that follows. Flat values as in
+    /// [`Component::set`].
+    pub fn record_inputs(
+        &mut self,
+        component: &Component,
+        references: &[ValueReference],
+        values: &[f64],
+        source: &str,
+    ) {
+        let mut rest = values;
+        for &reference in references {
+            let Some(variable) = component.variables().by_reference(reference) else {
+                continue; // The component accepted the call, so this does not happen.
+            };
+            let (own, others) = rest.split_at(variable.len().min(rest.len()));
+            rest = others;
+            self.pending.push(AppliedInput {
+                reference,
+                name: variable.name.clone(),
+                bits: own.iter().map(|v| v.to_bits()).collect(),
+                values: own.to_vec(),
+                source: source.to_owned(),
+            });
+        }
+    }
+
+    /// A step was done from `t` over `h` [s] by `source`: writes the inputs it used, all outputs, the figures of the
+    /// solver with the account of mass and, when due, a snapshot of the particles.
+    ///
+    /// # Errors
+    /// [`RecordError::Required`], [`RecordError::Component`].
+    pub fn record_step(
+        &mut self,
+        component: &Component,
+        report: &StepReport,
+        t: f64,
+        h: f64,
+        source: &str,
+    ) -> Result<(), RecordError> {
+        self.applied(component, AppliedEvent::Step, (t, h), source);
+        self.outputs(component, Some(report))?;
+        self.end_of_step()
+    }
+
+    /// A call from outside, or the reply to one.
+    ///
+    /// # Errors
+    /// [`RecordError::Required`].
+    pub fn record_command(&mut self, command: &Command) -> Result<(), RecordError> {
+        let channel = self.channels.command(&mut self.file, command);
+        let deterministic = self.options.deterministic;
+        let data = command.encode_to_vec();
+        write(&mut self.file, deterministic, channel, command.time, &data);
+        self.check()
+    }
+
+    /// A line for people; `name` is the part of the program that speaks.
+    ///
+    /// # Errors
+    /// [`RecordError::Required`].
+    pub fn log(
+        &mut self,
+        time: f64,
+        level: LogLevel,
+        name: &str,
+        message: &str,
+    ) -> Result<(), RecordError> {
+        let line = Log {
+            timestamp: Some(timestamp(time)),
+            level: level as i32,
+            message: message.to_owned(),
+            name: name.to_owned(),
+            file: String::new(),
+            line: 0,
+        };
+        let data = line.encode_to_vec();
+        let channel = &mut self.channels.log;
+        write(
+            &mut self.file,
+            self.options.deterministic,
+            channel,
+            time,
+            &data,
+        );
+        self.check()
+    }
+
+    /// A snapshot of the particles now, due or not.
+    ///
+    /// # Errors
+    /// [`RecordError::Required`].
+    pub fn particles(&mut self, component: &Component) -> Result<(), RecordError> {
+        let data = convert::point_cloud(component).encode_to_vec();
+        let channel = &mut self.channels.particles;
+        let time = component.time();
+        write(
+            &mut self.file,
+            self.options.deterministic,
+            channel,
+            time,
+            &data,
+        );
+        self.check()
+    }
+
+    /// The component was reset or restored: ends this file and starts the next (`run-0001.mcap`), which carries the
+    /// state it starts from.
+    ///
+    /// # Errors
+    /// As [`Recorder::create`] and [`Recorder::finish`].
+    pub fn record_jump(
+        &mut self,
+        component: &Component,
+        event: AppliedEvent,
+        source: &str,
+    ) -> Result<(), RecordError> {
+        let Some(place) = self.place.clone() else {
+            self.applied(component, event, (component.time(), f64::NAN), source);
+            return self.end_of_step();
+        };
+        let reason = match event {
+            AppliedEvent::Reset => "reset",
+            AppliedEvent::Restore => "restored",
+            AppliedEvent::Step | AppliedEvent::Initialize => "start",
+        };
+        let next = Place {
+            segment: place.segment + 1,
+            ..place
+        };
+        let options = RecordOptions {
+            reason: reason.to_owned(),
+            ..self.options.clone()
+        };
+        let sink = Box::new(next.create()?);
+        let mut following = Self::start(sink, Some(next), component, options)?;
+        following.trouble = self.trouble.take();
+        std::mem::replace(self, following).close(component, reason)?;
+        Ok(())
+    }
+
+    /// The first failed write, if there was one; what came after it is not in the file.
+    #[must_use]
+    pub fn failure(&self) -> Option<Failure> {
+        self.file.failure()
+    }
+
+    /// The first error of a call that came through [`Observer`](crate::wire::Observer), which has no answer to give.
+    pub fn take_trouble(&mut self) -> Option<RecordError> {
+        self.trouble.take()
+    }
+
+    pub(super) fn keep(&mut self, written: Result<(), RecordError>) {
+        if let Err(error) = written {
+            self.trouble.get_or_insert(error);
+        }
+    }
+
+    /// Messages that are not in the file because a write failed.
+    #[must_use]
+    pub fn dropped(&self) -> u64 {
+        self.file.counts().dropped
+    }
+
+    /// Writes the end (reason, steps, hash of the state, drops) and the summary, and gives the file its final name.
+    /// A log that failed before keeps the name that ends in `.part`.
+    ///
+    /// # Errors
+    /// [`RecordError::Required`] if the log is required and not whole, [`RecordError::Rename`].
+    pub fn finish(self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
+        self.close(component, reason)
+    }
+
+    fn close(mut self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
+        let figures = component.statistics();
+        let end = [
+            ("reason", reason.to_owned()),
+            ("time", component.time().to_string()),
+            ("time_bits", format!("{:016x}", component.time().to_bits())),
+            (
+                "communication_steps",
+                figures.communication_steps.to_string(),
+            ),
+            ("steps", figures.steps.to_string()),
+            ("state_hash", component.state_hash()),
+            ("dropped", self.dropped().to_string()),
+        ];
+        self.file.metadata("end", owned(end));
+        let (counts, failure) = self.file.finish();
+        if let (Some(failure), true) = (&failure, self.options.required) {
+            return Err(RecordError::Required(failure.clone()));
+        }
+        let path = match (&self.place, &failure) {
+            (Some(place), None) => Some(place.rename()?),
+            (Some(place), Some(_)) => Some(place.part()),
+            (None, _) => None,
+        };
+        Ok(Finished {
+            path,
+            messages: counts.written,
+            dropped: counts.dropped,
+            failure,
+        })
+    }
+
+    fn scene(&mut self, component: &Component) {
+        let time = component.time();
+        let update = picture::scene_update(component.scene(), time).encode_to_vec();
+        let channel = &mut self.channels.scene;
+        write(
+            &mut self.file,
+            self.options.deterministic,
+            channel,
+            time,
+            &update,
+        );
+    }
+
+    fn applied(
+        &mut self,
+        component: &Component,
+        event: AppliedEvent,
+        (t, h): (f64, f64),
+        source: &str,
+    ) {
+        let step = match event {
+            AppliedEvent::Initialize => 0,
+            _ => component.statistics().communication_steps,
+        };
+        let applied = Applied {
+            timestamp: Some(timestamp(t)),
+            event: event as i32,
+            step,
+            t_bits: t.to_bits(),
+            h_bits: h.to_bits(),
+            t,
+            h,
+            inputs: std::mem::take(&mut self.pending),
+            source: source.to_owned(),
+        };
+        let data = applied.encode_to_vec();
+        let channel = &mut self.channels.applied;
+        write(
+            &mut self.file,
+            self.options.deterministic,
+            channel,
+            t,
+            &data,
+        );
+    }
+
+    /// Outputs, figures, frames of the gates and, when due, particles.
+    fn outputs(
+        &mut self,
+        component: &Component,
+        report: Option<&StepReport>,
+    ) -> Result<(), RecordError> {
+        let (time, deterministic) = (component.time(), self.options.deterministic);
+        let step = component.statistics().communication_steps;
+        for (output, channel) in &mut self.channels.outputs {
+            let data = convert::gauge(component, output, step, channel.next)?.encode_to_vec();
+            write(&mut self.file, deterministic, channel, time, &data);
+        }
+        let stats = &mut self.channels.stats;
+        let data = convert::step_stats(component, report, stats.next).encode_to_vec();
+        write(&mut self.file, deterministic, stats, time, &data);
+        for frame in convert::gate_frames(component)? {
+            let channel = &mut self.channels.frames;
+            write(
+                &mut self.file,
+                deterministic,
+                channel,
+                time,
+                &frame.encode_to_vec(),
+            );
+        }
+        if self.particles_due(time) {
+            self.particles(component)?;
+        }
+        Ok(())
+    }
+
+    /// Whether a snapshot's time has come since the last one; several that a long step has passed give one.
+    fn particles_due(&mut self, time: f64) -> bool {
+        let every = self.options.particles_every;
+        if every <= 0.0 {
+            return false;
+        }
+        // A billionth of the interval is allowed for, as communication points are sums of rounded steps.
+        let due = ((time - self.first_time) / every + 1e-9).floor() as u64 + 1;
+        let come = due > self.snapshots;
+        self.snapshots = due;
+        come
+    }
+
+    fn end_of_step(&mut self) -> Result<(), RecordError> {
+        if self.options.deterministic {
+            self.file.flush();
+        }
+        self.check()
+    }
+
+    fn check(&self) -> Result<(), RecordError> {
+        match self.file.failure() {
+            Some(failure) if self.options.required => Err(RecordError::Required(failure)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Metadata "run" and "segment" and the attachments: first in the file, so that they survive a crash.
+fn write_preamble(
+    file: &mut LogFile,
+    component: &Component,
+    options: &RecordOptions,
+    segment: u32,
+) -> Result<(), RecordError> {
+    let scene = component.scene();
+    let run = [
+        ("scene", scene.name.clone()),
+        ("title", scene.title.clone()),
+        ("scene_hash", sha256_hex(scene.source.as_bytes())),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("instance", options.instance.clone()),
+        ("seed", scene.numerics.seed.to_string()),
+        ("precision", "f64".to_owned()),
+        ("communication_step", scene.run.step.to_string()),
+        ("deterministic", options.deterministic.to_string()),
+    ];
+    file.metadata("run", owned(run));
+    let begin = [
+        ("number", segment.to_string()),
+        ("reason", options.reason.clone()),
+        ("time", component.time().to_string()),
+    ];
+    file.metadata("segment", owned(begin));
+    let time = nanoseconds(component.time());
+    file.attachment(
+        "scene.toml",
+        "application/toml",
+        time,
+        scene.source.as_bytes(),
+    );
+    for (name, media_type, data) in &options.attachments {
+        file.attachment(name, media_type, time, data);
+    }
+    if has_state(component) {
+        let state = component.save()?;
+        file.attachment("start.state", "application/octet-stream", time, &state);
+    }
+    Ok(())
+}
+
+/// Whether the component is past its start, so that the scene alone does not say what it is.
+fn has_state(component: &Component) -> bool {
+    !matches!(component.mode(), Mode::Instantiated | Mode::Initialization)
+}
+
+fn write(file: &mut LogFile, deterministic: bool, channel: &mut Channel, time: f64, data: &[u8]) {
+    let log_time = nanoseconds(time);
+    let publish_time = if deterministic {
+        log_time
+    } else {
+        // A clock before 1970 gives 0; nothing depends on it.
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        since.map_or(0, |d| u64::try_from(d.as_nanos()).unwrap_or(u64::MAX))
+    };
+    // MCAP counts in 32 bits and says that numbers may come round.
+    let sequence = channel.next as u32;
+    file.message(time, channel.id, sequence, (log_time, publish_time), data);
+    channel.next += 1;
+}
+
+fn owned<const N: usize>(pairs: [(&str, String); N]) -> BTreeMap<String, String> {
+    pairs.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
+}
+
+fn sha256_hex(bytes: &[u8]) -> String {
+    let mut hex = String::new();
+    for byte in Sha256::digest(bytes) {
+        // Writing to a String does not fail.
+        let _ = write!(hex, "{byte:02x}");
+    }
+    hex
+}
