@@ -68,7 +68,8 @@ impl Channels {
     }
 }
 
-fn add<M: Described>(
+/// Adds one channel with the schema of `M`.
+pub(super) fn add<M: Described>(
     file: &mut LogFile,
     topic: &str,
     mut metadata: BTreeMap<String, String>,

@@ -13,6 +13,8 @@ mod mass;
 mod observe;
 mod read;
 mod sink;
+#[cfg(test)]
+mod tests;
 mod write;
 
 pub use error::{Failure, ReadError, RecordError};

@@ -1,0 +1,237 @@
+//! Files that break: cut at any byte, damaged, on a full disk, with a wrong account of mass.
+
+use super::channels::add;
+use super::file::{LogFile, Pace};
+use super::sink::Sink;
+use super::sink::tests::Disk;
+use super::{Body, Ending, Entry, LogReader, check_mass};
+use crate::wire::convert::nanoseconds;
+use crate::wire::messages::{MassLedger, StepStats};
+use prost::Message;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+const PLENTY: usize = 1 << 30;
+
+fn line(step: u64) -> StepStats {
+    // Powers of two, as particle masses are: sums are exact.
+    let out = step as f64 * 0.125;
+    StepStats {
+        time: step as f64 * 0.01,
+        step,
+        bound_by: "acoustic".to_owned(),
+        ledger: Some(MassLedger {
+            initial: 1024.0,
+            inflow: 0.25,
+            outflow: out,
+            present: 1024.25 - out,
+        }),
+        ..StepStats::default()
+    }
+}
+
+/// Writes `lines` with a flush after every `flush_every`-th.
+fn write(sink: impl Sink + 'static, lines: &[StepStats], flush_every: usize) -> LogFile {
+    let mut file = LogFile::start(Box::new(sink), None, Pace::Caller);
+    file.metadata("run", BTreeMap::from([("scene".into(), "tests".into())]));
+    file.attachment("scene.toml", "application/toml", 0, b"[domain]");
+    let channel = add::<StepStats>(&mut file, "sandgate/v1/tests/out/stats", BTreeMap::new());
+    for (i, line) in lines.iter().enumerate() {
+        let time = nanoseconds(line.time);
+        let data = line.encode_to_vec();
+        file.message(line.time, channel.id, i as u32, (time, time), &data);
+        if (i + 1) % flush_every == 0 {
+            file.flush();
+        }
+    }
+    file
+}
+
+fn whole(lines: &[StepStats], flush_every: usize) -> Vec<u8> {
+    let disk = Disk::with_room(PLENTY);
+    let mut file = write(disk.clone(), lines, flush_every);
+    let (counts, failure) = file.finish();
+    assert_eq!(
+        (counts.written, counts.dropped, failure),
+        (lines.len() as u64, 0, None)
+    );
+    let bytes = disk.bytes.lock().unwrap().clone();
+    bytes
+}
+
+fn on_disk(folder: &Path, bytes: &[u8]) -> PathBuf {
+    let path = folder.join("log.mcap");
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+fn read(path: &Path) -> (Vec<Entry>, Ending) {
+    let mut log = LogReader::open(path).unwrap();
+    let entries = log.by_ref().map(Result::unwrap).collect();
+    (entries, log.ending().unwrap().clone())
+}
+
+#[test]
+fn a_log_reads_back_as_it_was_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines: Vec<_> = (0..50).map(line).collect();
+    let (entries, ending) = read(&on_disk(folder.path(), &whole(&lines, 7)));
+    assert_eq!(ending, Ending::Complete);
+    assert!(matches!(&entries[0], Entry::Metadata { name, .. } if name == "run"));
+    assert!(matches!(&entries[1], Entry::Attachment { data, .. } if data == b"[domain]"));
+    let stats: Vec<_> = entries[2..]
+        .iter()
+        .map(|entry| match entry {
+            Entry::Message {
+                body: Body::Stats(stats),
+                log_time,
+                topic,
+                ..
+            } => {
+                assert_eq!(*log_time, nanoseconds(stats.time));
+                assert_eq!(topic, "sandgate/v1/tests/out/stats");
+                stats.clone()
+            }
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(stats, lines);
+}
+
+#[test]
+fn a_log_cut_at_any_byte_reads_up_to_the_cut_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines: Vec<_> = (0..6).map(line).collect();
+    let bytes = whole(&lines, 2);
+    let (all, _) = read(&on_disk(folder.path(), &bytes));
+    let mut longest = 0;
+    for length in mcap::MAGIC.len()..bytes.len() {
+        let (entries, ending) = read(&on_disk(folder.path(), &bytes[..length]));
+        assert!(all.starts_with(&entries), "cut at {length}");
+        assert!(entries.len() >= longest, "cut at {length}");
+        longest = entries.len();
+        assert!(matches!(ending, Ending::Cut { .. }), "cut at {length}");
+        assert!(ending.to_string().contains("cut short"), "{ending}");
+    }
+    assert_eq!(longest, all.len());
+}
+
+#[test]
+fn a_damaged_byte_never_passes_as_a_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines: Vec<_> = (0..20).map(line).collect();
+    let mut bytes = whole(&lines, 5);
+    let needle = line(12).encode_to_vec();
+    let at = bytes
+        .windows(needle.len())
+        .position(|w| w == needle)
+        .unwrap();
+    bytes[at + 3] ^= 0x10;
+    let path = on_disk(folder.path(), &bytes);
+    let mut log = LogReader::open(&path).unwrap();
+    let refused = log.by_ref().any(|entry| entry.is_err());
+    let cut = matches!(log.ending(), Some(Ending::Cut { why, .. }) if why.contains("CRC"));
+    assert!(refused || cut, "{:?}", log.ending());
+}
+
+#[test]
+fn other_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for bytes in [&b"[domain]\nlower = [0, 0]"[..], b"", b"\x89MCAP"] {
+        let Err(error) = LogReader::open(&on_disk(folder.path(), bytes)) else {
+            panic!("{bytes:?} was taken for a log");
+        };
+        assert!(error.to_string().contains("is not an MCAP file"), "{error}");
+    }
+    let Err(error) = LogReader::open(&folder.path().join("absent.mcap")) else {
+        panic!("an absent file was read");
+    };
+    assert!(error.to_string().contains("cannot read log"), "{error}");
+}
+
+#[test]
+fn a_disk_that_was_full_for_a_moment_leaves_a_log_without_a_hole() {
+    let folder = tempfile::tempdir().unwrap();
+    let lines: Vec<_> = (0..2000).map(line).collect();
+    let size = whole(&lines, 10).len();
+    let disk = Disk::with_room(size / 2);
+    let mut file = write(disk.clone(), &lines, 10);
+    *disk.room.lock().unwrap() = PLENTY;
+    let late = line(2000);
+    let channel = add::<StepStats>(&mut file, "sandgate/v1/tests/out/stats", BTreeMap::new());
+    file.message(late.time, channel.id, 2000, (0, 0), &late.encode_to_vec());
+    file.flush();
+    let (counts, failure) = file.finish();
+
+    let failure = failure.expect("half of the room is not enough");
+    assert!(
+        failure
+            .to_string()
+            .contains("log stopped at simulated time"),
+        "{failure}"
+    );
+    assert_eq!(counts.written + counts.dropped, 2001);
+    assert!(counts.written > 100 && counts.dropped > 100, "{counts:?}");
+    assert_eq!(disk.bytes.lock().unwrap().len(), size / 2);
+    let bytes = disk.bytes.lock().unwrap().clone();
+    let (entries, ending) = read(&on_disk(folder.path(), &bytes));
+    assert!(matches!(ending, Ending::Cut { .. }));
+    let messages = entries.len() as u64 - 2;
+    // Of the flush that failed a part may be there.
+    assert!((counts.written..counts.written + 10).contains(&messages));
+}
+
+#[test]
+fn a_device_without_room_is_reported() {
+    let full = std::fs::File::options()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let lines: Vec<_> = (0..100).map(line).collect();
+    let (counts, failure) = write(full, &lines, 10).finish();
+    assert_eq!((counts.written, counts.dropped), (0, 100));
+    let failure = failure.unwrap();
+    assert!(
+        failure.cause.contains("No space left on device"),
+        "{failure}"
+    );
+}
+
+#[test]
+fn without_a_call_the_clock_brings_messages_to_the_disk() {
+    let disk = Disk::with_room(PLENTY);
+    let mut file = LogFile::start(Box::new(disk.clone()), None, Pace::WallClock);
+    let channel = add::<StepStats>(&mut file, "sandgate/v1/tests/out/stats", BTreeMap::new());
+    let data = line(7).encode_to_vec();
+    file.message(0.07, channel.id, 0, (0, 0), &data);
+    let written = Instant::now();
+    let there = || {
+        let bytes = disk.bytes.lock().unwrap();
+        bytes.windows(data.len()).any(|w| w == data)
+    };
+    // It is a second on a machine that is not busy.
+    while !there() {
+        assert!(written.elapsed() < Duration::from_secs(20), "not flushed");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    assert_eq!(file.finish().1, None);
+}
+
+#[test]
+fn a_wrong_account_of_mass_is_found_to_the_last_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut lines: Vec<_> = (0..30).map(line).collect();
+    let right = check_mass(&on_disk(folder.path(), &whole(&lines, 10))).unwrap();
+    assert_eq!((right.lines, &right.wrong), (30, &None));
+    assert_eq!(right.last.unwrap().outflow, 29.0 * 0.125);
+    assert_eq!(right.ending, Ending::Complete);
+
+    for wrong in [(1024.25f64 - 2.125).next_up(), f64::NAN] {
+        lines[17].ledger.as_mut().unwrap().present = wrong;
+        let check = check_mass(&on_disk(folder.path(), &whole(&lines, 10))).unwrap();
+        let found = check.wrong.expect("one line is wrong");
+        assert_eq!(found.step, 17);
+        assert!(found.to_string().contains("step 17 at 0.17 s"), "{found}");
+    }
+}
