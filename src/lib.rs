@@ -13,5 +13,6 @@ pub mod scene;
 pub mod shape;
 pub mod solver;
 pub mod state;
+pub mod units;
 #[cfg(any(feature = "record", feature = "bus"))]
 pub mod wire;

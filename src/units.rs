@@ -1,0 +1,343 @@
+//! Quantities as they may be written in a scene: plain SI numbers, or text with a unit ("2 mm", "25 deg").
+//!
+//! The only unit code of the project: everything below a scene file is SI. Knows no physics and no files.
+
+use std::fmt;
+
+/// A physical quantity that a scene may state; each has its SI unit and the units it may be written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Length [m].
+    Length,
+    /// Time [s].
+    Time,
+    /// Angle [rad].
+    Angle,
+    /// Velocity [m/s].
+    Velocity,
+    /// Acceleration [m/s^2].
+    Acceleration,
+    /// Mass per time [kg/s].
+    MassRate,
+    /// Density [kg/m^3].
+    Density,
+    /// Pressure or stress [Pa].
+    Pressure,
+    /// A number without dimension \[1\].
+    Ratio,
+}
+
+/// A unit: its spelling and the exact fraction that turns a value into SI.
+#[derive(Clone, Copy, Debug)]
+struct Unit {
+    symbol: &'static str,
+    times: f64,
+    over: f64,
+}
+
+/// A unit of a quantity: SI value = value * times / over. Dividing keeps "3.02 mm" at the double next to 0.00302.
+const fn unit(symbol: &'static str, times: f64, over: f64) -> Unit {
+    Unit {
+        symbol,
+        times,
+        over,
+    }
+}
+
+const LENGTH: &[Unit] = &[
+    unit("m", 1.0, 1.0),
+    unit("mm", 1.0, 1e3),
+    unit("cm", 1.0, 1e2),
+    unit("um", 1.0, 1e6),
+    unit("km", 1e3, 1.0),
+];
+const TIME: &[Unit] = &[
+    unit("s", 1.0, 1.0),
+    unit("ms", 1.0, 1e3),
+    unit("us", 1.0, 1e6),
+    unit("min", 60.0, 1.0),
+];
+const ANGLE: &[Unit] = &[
+    unit("rad", 1.0, 1.0),
+    unit("deg", std::f64::consts::PI, 180.0),
+];
+const VELOCITY: &[Unit] = &[
+    unit("m/s", 1.0, 1.0),
+    unit("mm/s", 1.0, 1e3),
+    unit("cm/s", 1.0, 1e2),
+    unit("km/h", 1.0, 3.6),
+];
+const ACCELERATION: &[Unit] = &[unit("m/s^2", 1.0, 1.0), unit("m/s2", 1.0, 1.0)];
+const MASS_RATE: &[Unit] = &[
+    unit("kg/s", 1.0, 1.0),
+    unit("g/s", 1.0, 1e3),
+    unit("kg/min", 1.0, 60.0),
+    unit("kg/h", 1.0, 3600.0),
+    unit("t/h", 1.0, 3.6),
+];
+const DENSITY: &[Unit] = &[
+    unit("kg/m^3", 1.0, 1.0),
+    unit("kg/m3", 1.0, 1.0),
+    unit("g/cm^3", 1e3, 1.0),
+    unit("t/m^3", 1e3, 1.0),
+];
+const PRESSURE: &[Unit] = &[
+    unit("Pa", 1.0, 1.0),
+    unit("kPa", 1e3, 1.0),
+    unit("MPa", 1e6, 1.0),
+    unit("bar", 1e5, 1.0),
+];
+const RATIO: &[Unit] = &[unit("1", 1.0, 1.0), unit("%", 1.0, 1e2)];
+
+impl Quantity {
+    /// Every quantity.
+    pub const ALL: [Quantity; 9] = [
+        Quantity::Length,
+        Quantity::Time,
+        Quantity::Angle,
+        Quantity::Velocity,
+        Quantity::Acceleration,
+        Quantity::MassRate,
+        Quantity::Density,
+        Quantity::Pressure,
+        Quantity::Ratio,
+    ];
+
+    fn units(self) -> &'static [Unit] {
+        match self {
+            Quantity::Length => LENGTH,
+            Quantity::Time => TIME,
+            Quantity::Angle => ANGLE,
+            Quantity::Velocity => VELOCITY,
+            Quantity::Acceleration => ACCELERATION,
+            Quantity::MassRate => MASS_RATE,
+            Quantity::Density => DENSITY,
+            Quantity::Pressure => PRESSURE,
+            Quantity::Ratio => RATIO,
+        }
+    }
+
+    /// What people call it: "length".
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Length => "length",
+            Quantity::Time => "time",
+            Quantity::Angle => "angle",
+            Quantity::Velocity => "velocity",
+            Quantity::Acceleration => "acceleration",
+            Quantity::MassRate => "mass rate",
+            Quantity::Density => "density",
+            Quantity::Pressure => "pressure",
+            Quantity::Ratio => "ratio",
+        }
+    }
+
+    /// Its SI unit, the meaning of plain numbers: "m".
+    #[must_use]
+    pub fn si(self) -> &'static str {
+        self.units()[0].symbol
+    }
+
+    /// The units it may be written in, SI first.
+    pub fn symbols(self) -> impl Iterator<Item = &'static str> {
+        self.units().iter().map(|u| u.symbol)
+    }
+
+    /// An example of the text form: "2 mm".
+    #[must_use]
+    pub fn example(self) -> &'static str {
+        match self {
+            Quantity::Length => "2 mm",
+            Quantity::Time => "5 ms",
+            Quantity::Angle => "25 deg",
+            Quantity::Velocity => "0.5 m/s",
+            Quantity::Acceleration => "9.81 m/s^2",
+            Quantity::MassRate => "0.5 kg/s",
+            Quantity::Density => "2600 kg/m^3",
+            Quantity::Pressure => "20 kPa",
+            Quantity::Ratio => "40 %",
+        }
+    }
+
+    /// What may be written: `a length: a number in m, or text with a unit (m, mm, cm, um, km)`.
+    #[must_use]
+    pub fn allowed(self) -> String {
+        let article = if matches!(self, Quantity::Angle | Quantity::Acceleration) {
+            "an"
+        } else {
+            "a"
+        };
+        let plain = match self {
+            Quantity::Ratio => "a plain number".to_owned(),
+            _ => format!("a number in {}", self.si()),
+        };
+        let units: Vec<_> = self.symbols().collect();
+        format!(
+            "{article} {}: {plain}, or text with a unit ({})",
+            self.name(),
+            units.join(", ")
+        )
+    }
+}
+
+/// Text that is no value of the quantity asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnitError {
+    /// What was found, with its meaning where it has one: `"2 s" (a time)`.
+    pub found: String,
+    /// What was asked for.
+    pub expected: Quantity,
+}
+
+impl fmt::Display for UnitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "found {}, allowed {}; write for example \"{}\"",
+            self.found,
+            self.expected.allowed(),
+            self.expected.example()
+        )
+    }
+}
+
+impl std::error::Error for UnitError {}
+
+/// Longest text that can be a quantity; more is refused unread.
+const LONGEST: usize = 64;
+
+/// Reads a quantity from text, as its SI value; text without a unit is in SI.
+///
+/// # Errors
+/// [`UnitError`] if the text is no finite decimal number followed by a unit of `expected`.
+///
+/// # Examples
+/// ```
+/// use sandgate::units::{parse, Quantity};
+/// assert_eq!(parse("2 mm", Quantity::Length), Ok(0.002));
+/// assert_eq!(parse("40%", Quantity::Ratio), Ok(0.4));
+/// assert!(parse("2 s", Quantity::Length).unwrap_err().to_string().contains("(a time)"));
+/// ```
+pub fn parse(text: &str, expected: Quantity) -> Result<f64, UnitError> {
+    let refuse = |note: &str| {
+        Err(UnitError {
+            found: format!("{}{note}", quote(text)),
+            expected,
+        })
+    };
+    let Some((number, symbol)) = split(text) else {
+        return refuse(" (not a decimal number with a unit)");
+    };
+    let symbol = match symbol {
+        "°" => "deg",
+        "µm" | "μm" => "um",
+        other => other,
+    };
+    let known = expected
+        .units()
+        .iter()
+        .find(|u| u.symbol == symbol || symbol.is_empty());
+    let Some(unit) = known else {
+        return match Quantity::ALL
+            .iter()
+            .find(|q| q.symbols().any(|s| s == symbol))
+        {
+            Some(other) => refuse(&format!(" ({})", with_article(other.name()))),
+            None => refuse(&format!(" (unknown unit {})", quote(symbol))),
+        };
+    };
+    let value = number * unit.times / unit.over;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        refuse(" (too large for a number)")
+    }
+}
+
+/// Quotes text for a message, cut to a readable length, control characters escaped.
+#[must_use]
+pub fn quote(text: &str) -> String {
+    let mut shown: String = text.chars().take(LONGEST).collect();
+    if shown.len() < text.len() {
+        shown.push_str("...");
+    }
+    format!("{shown:?}")
+}
+
+fn with_article(name: &str) -> String {
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {name}")
+}
+
+/// Splits "2.5e-3 mm" into its number and its unit; the number is the longest prefix that is one.
+fn split(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    if text.len() > LONGEST {
+        return None;
+    }
+    let digits = text
+        .find(|c: char| !(c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E')))
+        .unwrap_or(text.len());
+    (1..=digits).rev().find_map(|end| {
+        let number: f64 = text[..end].parse().ok()?;
+        Some((number, text[end..].trim_start()))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unit_reads_as_its_si_value() {
+        let cases = [
+            ("3.02 mm", Quantity::Length, 0.003_02),
+            ("3.02mm", Quantity::Length, 0.003_02),
+            (" 7 ", Quantity::Length, 7.0),
+            ("-1.5e1 cm", Quantity::Length, -0.15),
+            ("320 µm", Quantity::Length, 0.000_32),
+            ("5 ms", Quantity::Time, 0.005),
+            ("2 min", Quantity::Time, 120.0),
+            ("180 deg", Quantity::Angle, std::f64::consts::PI),
+            ("180°", Quantity::Angle, std::f64::consts::PI),
+            ("36 km/h", Quantity::Velocity, 10.0),
+            ("9.81 m/s^2", Quantity::Acceleration, 9.81),
+            ("3.6 t/h", Quantity::MassRate, 1.0),
+            ("2.6 g/cm^3", Quantity::Density, 2600.0),
+            ("20 kPa", Quantity::Pressure, 20_000.0),
+            ("40 %", Quantity::Ratio, 0.4),
+        ];
+        for (text, quantity, si) in cases {
+            assert_eq!(parse(text, quantity), Ok(si), "{text}");
+        }
+    }
+
+    #[test]
+    fn wrong_units_say_what_they_are_and_what_is_allowed() {
+        let message = parse("2 s", Quantity::Length).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "found \"2 s\" (a time), allowed a length: a number in m, or text with a unit (m, mm, cm, um, km); \
+             write for example \"2 mm\""
+        );
+        for (text, note) in [
+            ("2 parsec", "unknown unit \"parsec\""),
+            ("nan", "not a decimal number"),
+            ("inf m", "not a decimal number"),
+            ("", "not a decimal number"),
+            ("mm", "not a decimal number"),
+            ("2,5 mm", "unknown unit \",5 mm\""),
+            ("1e999 m", "too large"),
+            ("2 e", "unknown unit \"e\""),
+        ] {
+            let message = parse(text, Quantity::Length).unwrap_err().to_string();
+            assert!(message.contains(note), "{text}: {message}");
+        }
+        assert!(parse(&"9".repeat(10_000), Quantity::Length).is_err());
+    }
+}
