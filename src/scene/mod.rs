@@ -4,6 +4,128 @@
 //! `build` turns a [`Scene`] into particles, walls, devices and gauges. No strings with meaning, no missing
 //! values and no units exist below this module.
 
+mod error;
+mod lift;
+mod raw;
 mod types;
 
+pub use error::{SceneError, SceneErrors};
 pub use types::*;
+
+use std::path::Path;
+
+use raw::{Place, Problems};
+use sha2::{Digest, Sha256};
+use toml::de::DeTable;
+
+/// Largest scene file [bytes].
+const LARGEST_FILE: u64 = 4 << 20;
+
+/// Reads a scene file.
+///
+/// # Errors
+/// [`SceneErrors`] with every problem of the file: not readable, not UTF-8, not TOML, or not a scene.
+pub fn load(path: &Path) -> Result<Scene, SceneErrors> {
+    let file = path.display().to_string();
+    let refuse = |found: String, allowed: &str, remedy: &str| {
+        Err(SceneErrors::new(vec![SceneError {
+            file: file.clone(),
+            line: 0,
+            key: String::new(),
+            found,
+            allowed: allowed.to_owned(),
+            remedy: remedy.to_owned(),
+        }]))
+    };
+    let size = match std::fs::metadata(path) {
+        Ok(about) if about.is_file() => about.len(),
+        Ok(_) => {
+            return refuse(
+                "a folder".into(),
+                "a scene file (TOML)",
+                "give the path of a file, for example cases/silo_gate.toml",
+            );
+        }
+        Err(error) => return refuse(error.to_string(), "a scene file (TOML)", "check the path"),
+    };
+    if size > LARGEST_FILE {
+        let found = format!("{size} bytes");
+        return refuse(found, "a scene file of at most 4 MiB", "give a scene file");
+    }
+    match std::fs::read(path).map(String::from_utf8) {
+        Ok(Ok(text)) => parse(&file, &text),
+        Ok(Err(error)) => {
+            let at = error.utf8_error().valid_up_to();
+            let found = format!("a byte at offset {at} that is not UTF-8");
+            refuse(found, "UTF-8 text", "save the file as UTF-8")
+        }
+        Err(error) => refuse(
+            error.to_string(),
+            "a readable file",
+            "check its permissions",
+        ),
+    }
+}
+
+/// Reads a scene from text; `file_name` only appears in messages.
+///
+/// # Errors
+/// [`SceneErrors`] with every problem of the text.
+pub fn parse(file_name: &str, text: &str) -> Result<Scene, SceneErrors> {
+    let mut problems = Problems::new(file_name, text);
+    let scene = match DeTable::parse_recoverable(text) {
+        (document, errors) if errors.is_empty() => raw::read_document(document, &mut problems)
+            .and_then(|scene| lift::lift(&scene, text, &mut problems)),
+        (_, errors) => {
+            report_syntax(text, &errors, &mut problems);
+            None
+        }
+    };
+    if text.len() as u64 > LARGEST_FILE {
+        let found = format!("{} bytes", text.len());
+        problems.report(
+            &Place::default(),
+            found,
+            "at most 4 MiB",
+            "give a scene file",
+        );
+    }
+    match scene {
+        Some(scene) if problems.is_empty() => Ok(scene),
+        _ => Err(SceneErrors::new(problems.into_vec())),
+    }
+}
+
+/// Text that is not TOML: every syntax error with its line.
+fn report_syntax(text: &str, errors: &[toml::de::Error], problems: &mut Problems) {
+    for error in errors {
+        let remedy = if error.message().contains("duplicate key") {
+            "rename or delete one of the two: every name and key stands once in its section"
+        } else if text.trim_start().starts_with(['{', '<']) {
+            "scene files are TOML, not JSON or XML: see docs/scene.md"
+        } else {
+            "correct the line: keys are written key = value, text in double quotes, sections as [name]"
+        };
+        problems.report(
+            &raw::syntax_place(error.span()),
+            error.message(),
+            "TOML",
+            remedy,
+        );
+    }
+}
+
+impl Scene {
+    /// SHA-256 of the scene's source text: saved states and FMUs carry it, so that they meet only their own scene.
+    #[must_use]
+    pub fn fingerprint(&self) -> [u8; 32] {
+        Sha256::digest(self.source.as_bytes()).into()
+    }
+
+    /// "Up" of the scene as a unit vector: the axis that gravity mostly points against; y (planar) or z (space)
+    /// without gravity. On an inclined plane this is the axis across the bed.
+    #[must_use]
+    pub fn up(&self) -> Point {
+        types::up(self.domain.gravity, self.dimension)
+    }
+}

@@ -348,6 +348,25 @@ pub struct LogSettings {
     pub required: bool,
 }
 
+/// The axis that gravity mostly points against, as a unit vector.
+pub(super) fn up(gravity: Point, dimension: Dimension) -> Point {
+    let last = match dimension {
+        Dimension::Two => 1,
+        Dimension::Three => 2,
+    };
+    // The last axis wins ties, so that a slope of 45 deg still has its bed along x.
+    let steepest = (0..=last).rev().fold(last, |best, axis| {
+        if gravity[axis].abs() > gravity[best].abs() {
+            axis
+        } else {
+            best
+        }
+    });
+    let mut up = [0.0; 3];
+    up[steepest] = if gravity[steepest] > 0.0 { -1.0 } else { 1.0 };
+    up
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,0 +1,395 @@
+//! Bodies: where material is at the start, clear of everything else.
+
+use super::geometry::{Region, crossing_edges, cut_below, signed_area};
+use super::walls::Solid;
+use super::{Lift, dot};
+use crate::scene::raw::{At, Coordinates, Entry, Length, List, Place, RawBody, RawBox, RawColumn};
+use crate::scene::types::Body;
+use crate::shape::Shape;
+
+/// Most corners of an outline: pairs of edges are compared.
+pub(super) const MOST_CORNERS: usize = 1000;
+
+impl Lift<'_> {
+    pub(super) fn bodies(&mut self) -> Vec<Body> {
+        let raw = self.raw;
+        let entries = Self::readable(raw.bodies.as_ref());
+        let lift = |(entry, body)| self.body(entry, body);
+        entries.into_iter().filter_map(lift).collect()
+    }
+
+    fn body(&mut self, entry: &Entry<RawBody>, raw: &RawBody) -> Option<Body> {
+        let material = raw.material.as_ref().and_then(|name| {
+            let known = self.raw.materials.as_ref();
+            self.index_of(&name.value.0, &name.place, "materials", known)
+        });
+        let velocity = match &raw.velocity {
+            Some(velocity) => self.vector(velocity),
+            None => Some([0.0; 3]),
+        };
+        let shape = self.shape(entry, raw)?;
+        let region = self.region(&shape);
+        let region = self.fill_to_level(raw, region)?;
+        self.check_body_size(&entry.place, &region);
+        let (lower, upper) = region.bounds();
+        if self.check_inside(&entry.place, lower) && self.check_inside(&entry.place, upper) {
+            self.check_bodies_apart(&entry.place, &region);
+        }
+        self.filled.push((entry.place.clone(), region));
+        Some(Body {
+            name: entry.name.clone(),
+            material: material?,
+            shape,
+            level: raw.level.as_ref().map(|l| l.value.0),
+            velocity: velocity?,
+        })
+    }
+
+    /// Exactly one of box, polygon and column, as the dimension allows.
+    fn shape(&mut self, entry: &Entry<RawBody>, raw: &RawBody) -> Option<Shape> {
+        let given = [
+            raw.r#box.as_ref().map(|_| "box"),
+            raw.polygon.as_ref().map(|_| "polygon"),
+            raw.column.as_ref().map(|_| "column"),
+        ];
+        self.check_one_of(
+            &entry.place,
+            &given,
+            "box, polygon, column",
+            "box = { lower = [0, 0], upper = [0.1, 0.1] }",
+        )?;
+        match (&raw.r#box, &raw.polygon, &raw.column) {
+            (Some(r#box), _, _) => {
+                let (lower, upper) = self.raw_box(r#box)?;
+                Some(Shape::Box { lower, upper })
+            }
+            (_, Some(polygon), _) => {
+                let points = self.polygon(polygon)?;
+                Some(Shape::Polygon { points })
+            }
+            (_, _, Some(column)) => self.column(column),
+            _ => None,
+        }
+    }
+
+    /// Reports none or several of a set of keys that exclude each other.
+    pub(super) fn check_one_of(
+        &mut self,
+        table: &Place,
+        given: &[Option<&str>],
+        keys: &str,
+        example: &str,
+    ) -> Option<()> {
+        let names: Vec<&str> = given.iter().copied().flatten().collect();
+        let remedy = match names.len() {
+            0 => format!("add for example {example}"),
+            1 => return Some(()),
+            _ => "delete all but one".to_owned(),
+        };
+        let found = match names.len() {
+            0 => "none of them".to_owned(),
+            _ => names.join(" and "),
+        };
+        self.problems
+            .report(table, found, format!("exactly one of {keys}"), remedy);
+        None
+    }
+
+    pub(super) fn raw_box(&mut self, at: &At<RawBox>) -> Option<([f64; 3], [f64; 3])> {
+        self.corners(at.value.lower.as_ref(), at.value.upper.as_ref())
+    }
+
+    fn column(&mut self, at: &At<RawColumn>) -> Option<Shape> {
+        if self.planar() {
+            self.problems.report(
+                &at.place,
+                "a column in a planar scene",
+                "box or polygon, because dimension = 2",
+                "use a box, or set dimension = 3",
+            );
+            return None;
+        }
+        let base = self.vector(at.value.base.as_ref()?)?;
+        Some(Shape::Column {
+            base,
+            radius: at.value.radius.as_ref()?.value.0,
+            height: at.value.height.as_ref()?.value.0,
+        })
+    }
+
+    /// Corners of an outline in the plane.
+    pub(super) fn outline(
+        &mut self,
+        at: &At<List<Coordinates<Length>>>,
+        least: usize,
+    ) -> Option<Vec<[f64; 2]>> {
+        let corners = &at.value.0;
+        if !self.planar() {
+            self.problems.report(
+                &at.place,
+                "a planar outline in a scene with dimension = 3",
+                "outlines only where dimension = 2",
+                "use box, column or plane, or set dimension = 2",
+            );
+            return None;
+        }
+        if corners.len() < least || corners.len() > MOST_CORNERS {
+            self.problems.report(
+                &at.place,
+                format!("{} points", corners.len()),
+                format!("{least} to {MOST_CORNERS} points"),
+                "write it as [[x, y], [x, y], ...]",
+            );
+            return None;
+        }
+        let mut points = Vec::new();
+        for corner in corners {
+            let [x, y, _] = self.vector(corner)?;
+            points.push([x, y]);
+        }
+        Some(points)
+    }
+
+    /// A simple polygon with an area.
+    fn polygon(&mut self, at: &At<List<Coordinates<Length>>>) -> Option<Vec<[f64; 2]>> {
+        let points = self.outline(at, 3)?;
+        let eps = self.eps();
+        let count = points.len();
+        for i in 0..count {
+            let (a, b) = (points[i], points[(i + 1) % count]);
+            if (b[0] - a[0]).hypot(b[1] - a[1]) <= eps {
+                self.problems.report(
+                    &at.value.0[(i + 1) % count].place,
+                    "the same point as the one before it",
+                    "corners apart from each other",
+                    "delete it; the last corner joins the first by itself",
+                );
+                return None;
+            }
+        }
+        if let Some((i, j)) = crossing_edges(&points, eps) {
+            self.problems.report(
+                &at.place,
+                format!("the edge after point {i} crosses the edge after point {j}"),
+                "a polygon that does not cross itself",
+                "give the corners in order around the outline (points count from 0)",
+            );
+            return None;
+        }
+        if signed_area(&points).abs() <= eps * eps {
+            self.problems.report(
+                &at.place,
+                "a polygon without area",
+                "corners that are not all on one line",
+                "move a corner",
+            );
+            return None;
+        }
+        Some(points)
+    }
+
+    fn region(&self, shape: &Shape) -> Region {
+        match shape {
+            Shape::Box { lower, upper } => Region::block(self.planar(), *lower, *upper),
+            Shape::Polygon { points } => Region::Polygon(points.clone()),
+            Shape::Column {
+                base,
+                radius,
+                height,
+            } => Region::Column {
+                base: *base,
+                radius: *radius,
+                height: *height,
+            },
+        }
+    }
+
+    /// The part of a body below its level; reports levels that leave nothing.
+    fn fill_to_level(&mut self, raw: &RawBody, region: Region) -> Option<Region> {
+        let Some(level) = &raw.level else {
+            return Some(region);
+        };
+        let up = self.up();
+        let (lower, upper) = region.bounds();
+        let (a, b) = (dot(up, lower), dot(up, upper));
+        let (low, high) = (a.min(b), a.max(b));
+        if level.value.0 <= low || level.value.0 > high + self.eps() {
+            self.problems.report(
+                &level.place,
+                format!("{} m", level.value.0),
+                format!("above {low} and at most {high} m, within the body's height"),
+                "correct the level or the body",
+            );
+            return None;
+        }
+        let level = level.value.0;
+        Some(match region {
+            Region::Polygon(points) => Region::Polygon(cut_below(&points, [up[0], up[1]], level)),
+            Region::Block {
+                mut lower,
+                mut upper,
+            } => {
+                for axis in 0..3 {
+                    if up[axis] > 0.5 {
+                        upper[axis] = upper[axis].min(level);
+                    } else if up[axis] < -0.5 {
+                        lower[axis] = lower[axis].max(-level);
+                    }
+                }
+                Region::Block { lower, upper }
+            }
+            // A column is upright: a level cuts it level only if "up" is z.
+            Region::Column {
+                base,
+                radius,
+                height,
+            } if up[2] > 0.5 => Region::Column {
+                base,
+                radius,
+                height: height.min(level - base[2]),
+            },
+            column @ Region::Column { .. } => column,
+        })
+    }
+
+    /// A body narrower than a particle would be empty.
+    fn check_body_size(&mut self, place: &Place, region: &Region) {
+        let Some(spacing) = self.spacing else {
+            return;
+        };
+        let (lower, upper) = region.bounds();
+        for axis in 0..self.axes() {
+            let extent = upper[axis] - lower[axis];
+            if extent < spacing * (1.0 - 1e-9) {
+                self.problems.report(
+                    place,
+                    format!("a body {extent} m wide along {}", Self::axis_name(axis)),
+                    format!("at least numerics.spacing, {spacing} m, along every axis"),
+                    "enlarge the body or refine numerics.spacing",
+                );
+                return;
+            }
+        }
+    }
+
+    fn check_bodies_apart(&mut self, place: &Place, region: &Region) {
+        let eps = self.eps();
+        let hit = self.filled.iter().find(|(_, r)| r.overlaps(region, eps));
+        if let Some((other, _)) = hit {
+            let found = format!("overlaps {}", other.key);
+            self.problems.report(
+                place,
+                found,
+                "bodies that touch at most",
+                "move or shrink one of them",
+            );
+        }
+    }
+
+    /// Bodies start outside walls, closed gates and drains.
+    pub(super) fn check_bodies_against_devices(&mut self) {
+        let eps = self.eps();
+        let spacing = self.spacing.unwrap_or(0.0);
+        let mut hits = Vec::new();
+        for (place, region) in &self.filled {
+            let boxes = self
+                .plates
+                .iter()
+                .map(|d| (d, "starts inside the plate of"));
+            let drains = self.drains.iter().map(|d| (d, "starts inside"));
+            for ((other, device), how) in boxes.chain(drains) {
+                if region.overlaps(device, eps) {
+                    hits.push((place, format!("{how} {}", other.key), "move the body"));
+                }
+            }
+            for (other, solid) in &self.solids {
+                if let Some((how, remedy)) = solid.meets(region, spacing, eps) {
+                    hits.push((place, format!("{how} {}", other.key), remedy));
+                }
+            }
+        }
+        for (place, found, remedy) in hits {
+            self.problems.report(
+                place,
+                found,
+                "bodies clear of walls, gates and outflows; touching is fine",
+                remedy,
+            );
+        }
+    }
+
+    /// A scene without bodies and inflows has nothing to do.
+    pub(super) fn check_something_flows(&mut self) {
+        let bodies = self.raw.bodies.as_ref().map_or(0, |b| b.value.0.len());
+        let inflows = self.raw.inflows.as_ref().map_or(0, |b| b.value.0.len());
+        if bodies + inflows == 0 {
+            self.problems.report(
+                &Place::default().child("bodies"),
+                "neither a body nor an inflow",
+                "at least one [bodies.NAME] or [inflows.NAME]",
+                "add a body, for example [bodies.fill] with material and box",
+            );
+        }
+    }
+}
+
+impl Solid {
+    /// How a body meets this wall where it must not, and what to do; `None` if it keeps clear.
+    pub(super) fn meets(
+        &self,
+        region: &Region,
+        spacing: f64,
+        eps: f64,
+    ) -> Option<(&'static str, &'static str)> {
+        match self {
+            Solid::Block(block) => block
+                .overlaps(region, eps)
+                .then_some(("overlaps", "move the body or the wall")),
+            Solid::Plane { point, normal } => {
+                let (lower, upper) = region.bounds();
+                let behind = |corner: usize| {
+                    let pick = |a: usize| {
+                        if corner >> a & 1 == 0 {
+                            lower[a]
+                        } else {
+                            upper[a]
+                        }
+                    };
+                    dot(super::minus([pick(0), pick(1), pick(2)], *point), *normal) < -eps
+                };
+                (0..8).any(behind).then_some((
+                    "reaches behind",
+                    "turn the plane's normal towards the material, or move the body",
+                ))
+            }
+            Solid::Polyline(segments) => segments.iter().find_map(|&(a, b)| {
+                let Region::Polygon(points) = region else {
+                    return None;
+                };
+                if super::geometry::edges(points)
+                    .any(|e| super::geometry::cross(e, (a, b), eps))
+                {
+                    return Some(("crosses", "move the body or the wall"));
+                }
+                probes_behind(a, b, spacing)
+                    .any(|p| region.holds(p, eps))
+                    .then_some((
+                        "lies behind (to the right of)",
+                        "reverse the order of the wall's points, or move the body to the wall's left",
+                    ))
+            }),
+        }
+    }
+}
+
+/// Points half a spacing to the right of a segment: the wall's first row of particles.
+fn probes_behind(a: [f64; 2], b: [f64; 2], spacing: f64) -> impl Iterator<Item = [f64; 3]> {
+    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+    let size = dx.hypot(dy);
+    let count = (size / spacing).clamp(1.0, 100.0).round();
+    let (nx, ny) = (dy / size * spacing / 2.0, -dx / size * spacing / 2.0);
+    (0..count as usize).map(move |i| {
+        let t = (i as f64 + 0.5) / count;
+        [a[0] + t * dx + nx, a[1] + t * dy + ny, 0.0]
+    })
+}

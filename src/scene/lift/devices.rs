@@ -1,0 +1,133 @@
+//! Inflows and outflows.
+
+use super::geometry::Region;
+use super::{Lift, cross_product, dot, length, minus};
+use crate::scene::raw::{Entry, RawInflow, RawOutflow};
+use crate::scene::types::{Inflow, NamedMaterial, Outflow, Point};
+
+impl Lift<'_> {
+    /// One for each `[inflows.NAME]` that is right.
+    pub(super) fn inflows(&mut self, materials: &[Option<NamedMaterial>]) -> Vec<Inflow> {
+        let raw = self.raw;
+        let entries = Self::readable(raw.inflows.as_ref());
+        let lift = |(entry, inflow)| self.inflow(entry, inflow, materials);
+        entries.into_iter().filter_map(lift).collect()
+    }
+
+    fn inflow(
+        &mut self,
+        entry: &Entry<RawInflow>,
+        raw: &RawInflow,
+        materials: &[Option<NamedMaterial>],
+    ) -> Option<Inflow> {
+        let material = raw.material.as_ref().and_then(|name| {
+            let known = self.raw.materials.as_ref();
+            self.index_of(&name.value.0, &name.place, "materials", known)
+        });
+        let span = self.span(raw.span.as_ref(), &entry.place);
+        let from = raw.from.as_ref().and_then(|p| self.point(p));
+        let to = raw.to.as_ref().and_then(|p| self.point(p));
+        let velocity = raw.velocity.as_ref().and_then(|v| self.vector(v));
+        let (from, to, span) = (from?, to?, span?);
+        if !self.check_face(&entry.place, from, to, span) {
+            return None;
+        }
+        let flux = self.check_inflow_direction(raw, from, to, span, velocity?)?;
+        let density = Self::rest_density(materials, material?)?;
+        let width = self.domain.as_ref()?.width;
+        let inflow = Inflow {
+            name: entry.name.clone(),
+            material: material?,
+            from,
+            to,
+            span,
+            velocity: velocity?,
+            rate: raw.rate.as_ref()?.value.0,
+            max_rate: density * width * flux,
+        };
+        self.check_inflow_rate(raw, &inflow);
+        Some(inflow)
+    }
+
+    /// Material leaves the face on its left; gives face times normal velocity [m^2/s] or [m^3/s].
+    fn check_inflow_direction(
+        &mut self,
+        raw: &RawInflow,
+        from: Point,
+        to: Point,
+        span: Point,
+        velocity: Point,
+    ) -> Option<f64> {
+        let edge = minus(to, from);
+        let area = if self.planar() {
+            [-edge[1], edge[0], 0.0]
+        } else {
+            cross_product(edge, span)
+        };
+        let flux = dot(area, velocity);
+        if flux > 1e-6 * length(area) * length(velocity) {
+            return Some(flux);
+        }
+        let found = if length(velocity) > 0.0 {
+            "a velocity that points into the face or along it"
+        } else {
+            "a velocity of 0"
+        };
+        self.problems.report(
+            &raw.velocity.as_ref()?.place,
+            found,
+            "a velocity to the left of the way from `from` to `to` (in space: along (to - from) x span)",
+            "reverse the velocity, or swap from and to",
+        );
+        None
+    }
+
+    fn check_inflow_rate(&mut self, raw: &RawInflow, inflow: &Inflow) {
+        if let Some(rate) = &raw.rate
+            && rate.value.0 > inflow.max_rate
+        {
+            self.problems.report(
+                &rate.place,
+                format!("{} kg/s", rate.value.0),
+                format!(
+                    "at most {} kg/s: density at rest x face x velocity",
+                    inflow.max_rate
+                ),
+                "lower the rate, widen the face or raise the velocity",
+            );
+        }
+    }
+
+    pub(super) fn outflows(&mut self) -> Vec<Outflow> {
+        let raw = self.raw;
+        let entries = Self::readable(raw.outflows.as_ref());
+        let lift = |(entry, outflow)| self.outflow(entry, outflow);
+        entries.into_iter().filter_map(lift).collect()
+    }
+
+    fn outflow(&mut self, entry: &Entry<RawOutflow>, raw: &RawOutflow) -> Option<Outflow> {
+        let (lower, upper) = self.corners(raw.lower.as_ref(), raw.upper.as_ref())?;
+        if !(self.check_inside(&raw.lower.as_ref()?.place, lower)
+            && self.check_inside(&raw.upper.as_ref()?.place, upper))
+        {
+            return None;
+        }
+        let region = Region::block(self.planar(), lower, upper);
+        let eps = self.eps();
+        if let Some((other, _)) = self.drains.iter().find(|(_, r)| r.overlaps(&region, eps)) {
+            let found = format!("overlaps {}", other.key);
+            self.problems.report(
+                &entry.place,
+                found,
+                "outflows that touch at most, so that each particle is counted once",
+                "move or shrink one of them",
+            );
+        }
+        self.drains.push((entry.place.clone(), region));
+        Some(Outflow {
+            name: entry.name.clone(),
+            lower,
+            upper,
+        })
+    }
+}

@@ -1,0 +1,158 @@
+//! Gauges.
+
+use super::{Lift, dot};
+use crate::scene::raw::{
+    At, Coordinates, Entry, Length, Place, Ratio, RawDepth, RawFront, RawGauge, RawProfile,
+};
+use crate::scene::types::{ForceTarget, Gauge, GaugeKind, Point};
+
+type Up<'a> = Option<&'a At<Coordinates<Ratio>>>;
+
+impl Lift<'_> {
+    pub(super) fn gauges(&mut self) -> Vec<Gauge> {
+        let raw = self.raw;
+        let entries = Self::readable(raw.gauges.as_ref());
+        let lift = |(entry, gauge): (&Entry<RawGauge>, &RawGauge)| {
+            Some(Gauge {
+                name: entry.name.clone(),
+                kind: self.gauge(entry, gauge)?,
+            })
+        };
+        entries.into_iter().filter_map(lift).collect()
+    }
+
+    fn gauge(&mut self, entry: &Entry<RawGauge>, raw: &RawGauge) -> Option<GaugeKind> {
+        match raw {
+            RawGauge::Depth(raw) => self.depth(raw),
+            RawGauge::Profile(raw) => self.profile(&entry.place, raw),
+            RawGauge::Discharge(raw) => {
+                let span = self.span(raw.span.as_ref(), &entry.place);
+                let from = raw.from.as_ref().and_then(|p| self.point(p));
+                let to = raw.to.as_ref().and_then(|p| self.point(p));
+                let (from, to, span) = (from?, to?, span?);
+                self.check_face(&entry.place, from, to, span);
+                Some(GaugeKind::Discharge { from, to, span })
+            }
+            RawGauge::Force(raw) => {
+                let on = raw.on.as_ref()?;
+                let on = self.force_target(&on.value.0, &on.place)?;
+                Some(GaugeKind::Force { on })
+            }
+            RawGauge::Pressure(raw) => {
+                let at = self.point(raw.at.as_ref()?)?;
+                Some(GaugeKind::Pressure { at })
+            }
+            RawGauge::Front(raw) => self.front(raw),
+        }
+    }
+
+    fn depth(&mut self, raw: &RawDepth) -> Option<GaugeKind> {
+        let up = self.gauge_up(raw.up.as_ref())?;
+        let foot = self.point(raw.foot.as_ref()?)?;
+        let length = self.line_length(raw.length.as_ref(), &[foot], up)?;
+        Some(GaugeKind::Depth { foot, up, length })
+    }
+
+    fn profile(&mut self, place: &Place, raw: &RawProfile) -> Option<GaugeKind> {
+        let up = self.gauge_up(raw.up.as_ref())?;
+        let from = raw.from.as_ref().and_then(|p| self.point(p));
+        let to = raw.to.as_ref().and_then(|p| self.point(p));
+        let (from, to) = (from?, to?);
+        self.check_feet(place, from, to);
+        let length = self.line_length(raw.length.as_ref(), &[from, to], up)?;
+        Some(GaugeKind::Profile {
+            from,
+            to,
+            count: usize::try_from(raw.count.as_ref()?.value.0).ok()?,
+            up,
+            length,
+        })
+    }
+
+    fn check_feet(&mut self, place: &Place, from: Point, to: Point) {
+        if super::length(super::minus(to, from)) <= self.eps() {
+            self.problems.report(
+                place,
+                "from and to at the same point",
+                "two points apart from each other",
+                "move one of them, or use a depth gauge",
+            );
+        }
+    }
+
+    fn front(&mut self, raw: &RawFront) -> Option<GaugeKind> {
+        let up = self.gauge_up(raw.up.as_ref())?;
+        let origin = raw.origin.as_ref().and_then(|p| self.point(p));
+        let direction_at = raw.direction.as_ref()?;
+        let direction = self.direction(direction_at)?;
+        if dot(direction, up).abs() > 0.999 {
+            self.problems.report(
+                &direction_at.place,
+                "a direction parallel to up",
+                "a direction along the bed",
+                "write for example [1, 0]",
+            );
+            return None;
+        }
+        Some(GaugeKind::Front {
+            origin: origin?,
+            direction,
+            up,
+        })
+    }
+
+    /// As given, or "up" of the scene.
+    fn gauge_up(&mut self, up: Up<'_>) -> Option<Point> {
+        match up {
+            Some(up) => self.direction(up),
+            None => Some(self.up()),
+        }
+    }
+
+    /// As given, or from the farthest foot to the domain's edge.
+    fn line_length(
+        &mut self,
+        given: Option<&At<Length>>,
+        feet: &[Point],
+        up: Point,
+    ) -> Option<f64> {
+        if let Some(length) = given {
+            return Some(length.value.0);
+        }
+        let domain = self.domain.as_ref()?;
+        let reach = |foot: &Point| {
+            let exits = (0..self.axes()).filter(|&a| up[a].abs() > 1e-9).map(|a| {
+                let side = if up[a] > 0.0 {
+                    domain.upper[a]
+                } else {
+                    domain.lower[a]
+                };
+                (side - foot[a]) / up[a]
+            });
+            exits.fold(f64::INFINITY, f64::min)
+        };
+        Some(feet.iter().map(reach).fold(0.0, f64::max))
+    }
+
+    /// `wall.NAME` or `gate.NAME`.
+    fn force_target(&mut self, text: &str, place: &Place) -> Option<ForceTarget> {
+        let raw = self.raw;
+        match text.split_once('.') {
+            Some(("wall", name)) => self
+                .index_of(name, place, "walls", raw.walls.as_ref())
+                .map(ForceTarget::Wall),
+            Some(("gate", name)) => self
+                .index_of(name, place, "gates", raw.gates.as_ref())
+                .map(ForceTarget::Gate),
+            _ => {
+                self.problems.report(
+                    place,
+                    format!("text {}", crate::units::quote(text)),
+                    "\"wall.NAME\" or \"gate.NAME\"",
+                    "write for example \"wall.floor\"",
+                );
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! From what was typed to the typed scene: every rule that concerns more than one key, as a named check.
+//!
+//! A problem never stops the reading: what cannot be lifted is reported and left out, and the rest is checked all
+//! the same. A scene is built only if nothing was reported.
+
+mod bodies;
+mod devices;
+mod domain;
+mod gauges;
+mod geometry;
+mod material;
+mod numerics;
+mod run;
+mod walls;
+
+use super::raw::{At, Coordinates, Entry, Named, Place, Problems, RawScene, nearest};
+use super::types::{Dimension, Domain, NamedMaterial, Point, Scene};
+use geometry::Region;
+
+/// The scene, or `None` if a problem was reported.
+pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Option<Scene> {
+    let mut lift = Lift::new(raw, problems);
+    let materials = lift.materials();
+    let bodies = lift.bodies();
+    let walls = lift.walls();
+    let gates = lift.gates();
+    let inflows = lift.inflows(&materials);
+    let outflows = lift.outflows();
+    let gauges = lift.gauges();
+    lift.check_bodies_against_devices();
+    lift.check_something_flows();
+    let numerics = lift.numerics();
+    let run = lift.run();
+    let schedules = lift.schedules(&inflows);
+    let log = lift.log(run);
+    let (dimension, domain) = (lift.dimension, lift.domain);
+    Some(Scene {
+        name: raw.name.as_ref()?.value.0.clone(),
+        title: raw.title.as_ref()?.value.0.clone(),
+        source: source.to_owned(),
+        dimension,
+        domain: domain?,
+        numerics: numerics?,
+        materials: materials.into_iter().collect::<Option<_>>()?,
+        bodies,
+        walls,
+        gates,
+        inflows,
+        outflows,
+        gauges,
+        run: run?,
+        schedules,
+        log: log?,
+    })
+    .filter(|_| problems.is_empty())
+}
+
+/// What the checks share.
+struct Lift<'r> {
+    raw: &'r RawScene,
+    problems: &'r mut Problems,
+    dimension: Dimension,
+    domain: Option<Domain>,
+    /// Particle spacing [m].
+    spacing: Option<f64>,
+    /// Bodies lifted so far, with what they fill.
+    filled: Vec<(Place, Region)>,
+    /// Outflows lifted so far.
+    drains: Vec<(Place, Region)>,
+    /// Plates of gates, where they cover their gap at the start.
+    plates: Vec<(Place, Region)>,
+    /// Walls, as far as bodies must keep clear of them.
+    solids: Vec<(Place, walls::Solid)>,
+    /// Heights along "up" of walls and gates [m].
+    heights: Vec<f64>,
+}
+
+/// Tolerance of geometric checks over the particle spacing: far below a particle, far above rounding.
+const TOUCH: f64 = 1e-4;
+
+impl<'r> Lift<'r> {
+    fn new(raw: &'r RawScene, problems: &'r mut Problems) -> Self {
+        let dimension = match raw.dimension.as_ref().map(|d| d.value.0) {
+            Some(3) => Dimension::Three,
+            _ => Dimension::Two,
+        };
+        let spacing = raw.numerics.as_ref().and_then(|n| n.value.spacing.as_ref());
+        let mut lift = Self {
+            raw,
+            problems,
+            dimension,
+            domain: None,
+            spacing: spacing.map(|s| s.value.0),
+            filled: Vec::new(),
+            drains: Vec::new(),
+            plates: Vec::new(),
+            solids: Vec::new(),
+            heights: Vec::new(),
+        };
+        lift.domain = lift.domain();
+        lift
+    }
+
+    fn planar(&self) -> bool {
+        self.dimension == Dimension::Two
+    }
+
+    /// Number of axes.
+    fn axes(&self) -> usize {
+        if self.planar() { 2 } else { 3 }
+    }
+
+    fn axis_name(axis: usize) -> &'static str {
+        ["x", "y", "z"][axis]
+    }
+
+    /// Tolerance of geometric checks [m].
+    fn eps(&self) -> f64 {
+        TOUCH * self.spacing.unwrap_or(1e-3)
+    }
+
+    /// "Up": the axis that gravity mostly points against.
+    fn up(&self) -> Point {
+        let gravity = self.domain.as_ref().map_or([0.0; 3], |d| d.gravity);
+        super::types::up(gravity, self.dimension)
+    }
+
+    fn height(&self, point: Point) -> f64 {
+        dot(self.up(), point)
+    }
+
+    /// A point or vector with as many values as the scene has dimensions; reports other counts.
+    fn vector<Q>(&mut self, at: &At<Coordinates<Q>>) -> Option<Point> {
+        let values = &at.value.values;
+        if values.len() != self.axes() {
+            let (allowed, remedy) = if self.planar() {
+                (
+                    "2 values, [x, y], because dimension = 2",
+                    "delete the third value, or set dimension = 3",
+                )
+            } else {
+                (
+                    "3 values, [x, y, z], because dimension = 3",
+                    "add the third value, or set dimension = 2",
+                )
+            };
+            let found = format!("{} values", values.len());
+            self.problems.report(&at.place, found, allowed, remedy);
+            return None;
+        }
+        let mut point = [0.0; 3];
+        point[..values.len()].copy_from_slice(values);
+        Some(point)
+    }
+
+    /// As [`Lift::vector`], and inside the domain.
+    fn point<Q>(&mut self, at: &At<Coordinates<Q>>) -> Option<Point> {
+        let point = self.vector(at)?;
+        self.check_inside(&at.place, point).then_some(point)
+    }
+
+    /// Reports points outside the domain.
+    fn check_inside(&mut self, place: &Place, point: Point) -> bool {
+        let Some(domain) = &self.domain else {
+            return true;
+        };
+        let eps = self.eps();
+        let outside = (0..self.axes())
+            .find(|&a| point[a] < domain.lower[a] - eps || point[a] > domain.upper[a] + eps);
+        if let Some(axis) = outside {
+            let name = Self::axis_name(axis);
+            let allowed = format!(
+                "{name} from {} to {} m, the domain",
+                domain.lower[axis], domain.upper[axis]
+            );
+            let found = format!("{name} = {} m", point[axis]);
+            let remedy = "move it into the domain, or enlarge domain.lower and domain.upper";
+            self.problems.report(place, found, allowed, remedy);
+        }
+        outside.is_none()
+    }
+
+    /// A direction of unit length; reports zero vectors.
+    fn direction<Q>(&mut self, at: &At<Coordinates<Q>>) -> Option<Point> {
+        let vector = self.vector(at)?;
+        let unit = normalized(vector);
+        if unit.is_none() {
+            self.problems.report(
+                &at.place,
+                "a vector of length 0",
+                "a direction: any vector that is not 0",
+                "write for example [0, 1]",
+            );
+        }
+        unit
+    }
+
+    /// The second edge of a face: needed in space, refused in the plane.
+    fn span<Q>(&mut self, span: Option<&At<Coordinates<Q>>>, table: &Place) -> Option<Point> {
+        match (span, self.planar()) {
+            (None, true) => Some([0.0; 3]),
+            (Some(span), true) => {
+                self.problems.report(
+                    &span.place,
+                    "span in a planar scene",
+                    "span only where dimension = 3; the plane's depth is domain.width",
+                    "delete it",
+                );
+                None
+            }
+            (Some(span), false) => self.vector(span),
+            (None, false) => {
+                self.problems.report(
+                    &table.child("span"),
+                    "nothing",
+                    "the vector of the face's second edge, because dimension = 3",
+                    "add for example span = [0, 0.1, 0]",
+                );
+                None
+            }
+        }
+    }
+
+    /// A box with lower below upper on every axis and at least `least` wide.
+    fn corners(
+        &mut self,
+        lower: Option<&At<Coordinates<super::raw::Length>>>,
+        upper: Option<&At<Coordinates<super::raw::Length>>>,
+    ) -> Option<(Point, Point)> {
+        let (low_at, high_at) = (lower?, upper?);
+        let (low, high) = (self.vector(low_at), self.vector(high_at));
+        let (low, high) = (low?, high?);
+        for axis in 0..self.axes() {
+            if low[axis] >= high[axis] {
+                let name = Self::axis_name(axis);
+                let found = format!("{name} = {} m", high[axis]);
+                let allowed = format!("{name} above {} m, that of lower", low[axis]);
+                let remedy = "swap or correct the corners";
+                self.problems.report(&high_at.place, found, allowed, remedy);
+                return None;
+            }
+        }
+        Some((low, high))
+    }
+
+    /// Index of a name among a section's entries; reports unknown names with the nearest.
+    fn index_of<T>(
+        &mut self,
+        name: &str,
+        place: &Place,
+        section: &str,
+        entries: Option<&At<Named<T>>>,
+    ) -> Option<usize> {
+        let entries: &[Entry<T>] = entries.map_or(&[], |e| &e.value.0);
+        let index = entries.iter().position(|e| e.name == name);
+        if index.is_none() {
+            let known: Vec<_> = entries.iter().map(|e| e.name.as_str()).collect();
+            let allowed = if known.is_empty() {
+                format!("a name from [{section}.*], but there is none")
+            } else {
+                format!("a name from [{section}.*]: {}", known.join(", "))
+            };
+            let remedy = match nearest(name, known.iter().copied()) {
+                Some(near) => format!("did you mean {near}?"),
+                None => format!("choose one of these, or add [{section}.NAME]"),
+            };
+            let found = format!("unknown name {}", crate::units::quote(name));
+            self.problems.report(place, found, allowed, remedy);
+        }
+        index
+    }
+
+    /// All entries of a section that could be read.
+    fn readable<T>(entries: Option<&'r At<Named<T>>>) -> Vec<(&'r Entry<T>, &'r T)> {
+        entries.map_or(Vec::new(), |e| {
+            let read = |entry: &'r Entry<T>| Some((entry, entry.value.as_ref()?));
+            e.value.0.iter().filter_map(read).collect()
+        })
+    }
+
+    /// Density at rest of a lifted material [kg/m^3].
+    fn rest_density(materials: &[Option<NamedMaterial>], index: usize) -> Option<f64> {
+        let named = materials.get(index)?.as_ref()?;
+        Some(named.material.rest_density())
+    }
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn minus(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn length(a: Point) -> f64 {
+    a[0].hypot(a[1]).hypot(a[2])
+}
+
+fn cross_product(a: Point, b: Point) -> Point {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn normalized(a: Point) -> Option<Point> {
+    let size = length(a);
+    (size > 0.0 && size.is_finite()).then(|| a.map(|c| c / size))
+}

@@ -1,0 +1,119 @@
+//! Numerical choices: resolution against the bodies, and the sound speed if the file does not give it.
+
+use super::Lift;
+use crate::scene::raw::{Place, RawNumerics, SchemeWord};
+use crate::solver::{Numerics, Scheme};
+
+/// Most particles of a scene: memory of a large machine.
+const MOST_PARTICLES: f64 = 50e6;
+/// Most cells of the neighbour grid, occupied or not.
+const MOST_CELLS: f64 = 1e9;
+
+impl Lift<'_> {
+    pub(super) fn numerics(&mut self) -> Option<Numerics> {
+        let table = self.raw.numerics.as_ref()?;
+        let raw = &table.value;
+        self.check_particle_count(raw);
+        let sound_speed = self.sound_speed(raw, &table.place);
+        Some(Numerics {
+            spacing: raw.spacing.as_ref()?.value.0,
+            smoothing_ratio: raw.smoothing_ratio.as_ref()?.value.0,
+            sound_speed: sound_speed?,
+            scheme: match raw.scheme.as_ref()?.value {
+                SchemeWord::Implicit => Scheme::Implicit,
+                SchemeWord::Explicit => Scheme::Explicit,
+            },
+            courant: raw.courant.as_ref()?.value.0,
+            cap_time: raw.cap_time.as_ref()?.value.0,
+            density_diffusion: raw.density_diffusion.as_ref()?.value.0,
+            diffusion_gate_time: raw.diffusion_gate_time.as_ref()?.value.0,
+            strain_relaxation_time: raw.strain_relaxation_time.as_ref()?.value.0,
+            pair_viscosity_share: raw.pair_viscosity_share.as_ref()?.value.0,
+            artificial_viscosity: raw.artificial_viscosity.as_ref()?.value.0,
+            solver_tolerance: raw.solver_tolerance.as_ref()?.value.0,
+            solver_max_iterations: u32::try_from(raw.solver_max_iterations.as_ref()?.value.0)
+                .unwrap_or(u32::MAX),
+            jitter: raw.jitter.as_ref()?.value.0,
+            seed: raw.seed.as_ref()?.value.0,
+        })
+    }
+
+    /// Neither more particles nor more grid cells than a machine holds.
+    fn check_particle_count(&mut self, raw: &RawNumerics) {
+        let (Some(spacing), Some(domain)) = (&raw.spacing, &self.domain) else {
+            return;
+        };
+        let axes = i32::try_from(self.axes()).unwrap_or(3);
+        let volume: f64 = self.filled.iter().map(|(_, region)| region.measure()).sum();
+        let particles = volume / spacing.value.0.powi(axes);
+        let extent: f64 = (0..self.axes())
+            .map(|a| domain.upper[a] - domain.lower[a])
+            .product();
+        let cells = extent / (3.2 * spacing.value.0).powi(axes);
+        if particles > MOST_PARTICLES {
+            self.problems.report(
+                &spacing.place,
+                format!(
+                    "a spacing of {} m, which makes {particles:.3e} particles",
+                    spacing.value.0
+                ),
+                format!("at most {MOST_PARTICLES:.0e} particles"),
+                "use a coarser spacing or smaller bodies",
+            );
+        } else if cells > MOST_CELLS {
+            self.problems.report(
+                &spacing.place,
+                format!(
+                    "a spacing of {} m in this domain, {cells:.3e} cells",
+                    spacing.value.0
+                ),
+                format!("at most {MOST_CELLS:.0e} cells of the neighbour grid"),
+                "use a coarser spacing or a smaller domain",
+            );
+        }
+    }
+
+    /// c0 as given, or 10 max(sqrt(g H), expected speed).
+    fn sound_speed(&mut self, raw: &RawNumerics, table: &Place) -> Option<f64> {
+        let expected = raw.expected_speed.as_ref()?.value.0;
+        if let Some(given) = &raw.sound_speed {
+            if given.value.0 < expected {
+                self.problems.report(
+                    &given.place,
+                    format!("{} m/s", given.value.0),
+                    format!("at least expected_speed, {expected} m/s; ten times that is usual"),
+                    "raise sound_speed, or leave it out",
+                );
+                return None;
+            }
+            return Some(given.value.0);
+        }
+        let domain = self.domain.as_ref()?;
+        let (lower, upper) = (self.height(domain.lower), self.height(domain.upper));
+        let height = self.material_height().unwrap_or((upper - lower).abs());
+        let wave = (self.gravity_size() * height).sqrt();
+        let speed = 10.0 * wave.max(expected);
+        if speed > 0.0 && speed.is_finite() {
+            return Some(speed);
+        }
+        self.problems.report(
+            &table.child("expected_speed"),
+            "no gravity and no expected speed",
+            "a speed above 0 m/s, from which the sound speed follows",
+            "add expected_speed, for example \"1 m/s\"",
+        );
+        None
+    }
+
+    /// Height of the highest material over the lowest wall or material; `None` without bodies.
+    fn material_height(&self) -> Option<f64> {
+        let tops = self.filled.iter().map(|(_, region)| {
+            let (lower, upper) = region.bounds();
+            let (a, b) = (self.height(lower), self.height(upper));
+            (a.min(b), a.max(b))
+        });
+        let (low, high) = tops.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))?;
+        let floor = self.heights.iter().copied().fold(low, f64::min);
+        Some(high - floor)
+    }
+}

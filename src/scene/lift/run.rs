@@ -1,0 +1,213 @@
+//! Run times, schedules and log settings.
+
+use super::Lift;
+use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint};
+use crate::scene::types::{Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule};
+use crate::units::{Quantity, quote};
+
+/// Most communication steps of a run.
+const MOST_STEPS: f64 = 1e8;
+
+impl Lift<'_> {
+    pub(super) fn run(&mut self) -> Option<Run> {
+        let raw = &self.raw.run.as_ref()?.value;
+        let (step, until) = (raw.step.as_ref()?, raw.until.as_ref()?);
+        if until.value.0 < step.value.0 {
+            self.problems.report(
+                &until.place,
+                format!("{} s", until.value.0),
+                format!("at least run.step, {} s", step.value.0),
+                "raise until or shorten step",
+            );
+            return None;
+        }
+        let steps = until.value.0 / step.value.0;
+        if steps > MOST_STEPS {
+            self.problems.report(
+                &step.place,
+                format!(
+                    "{} s, which makes {steps:.3e} steps until {} s",
+                    step.value.0, until.value.0
+                ),
+                format!("at most {MOST_STEPS:.0e} communication steps"),
+                "use a longer step or an earlier end",
+            );
+            return None;
+        }
+        Some(Run {
+            step: step.value.0,
+            until: until.value.0,
+        })
+    }
+
+    pub(super) fn log(&mut self, run: Option<Run>) -> Option<LogSettings> {
+        // An absent [log] is one with every key left out: 50 ms, or the step if that is longer.
+        const USUAL: f64 = 0.05;
+        let step = run.map_or(0.0, |r| r.step);
+        let Some(log) = &self.raw.log else {
+            return Some(LogSettings {
+                particles_every: USUAL.max(step),
+                required: true,
+            });
+        };
+        let every = log.value.particles_every.as_ref()?;
+        let left_out = every.place.offset == log.place.offset;
+        let mut particles_every = every.value.0;
+        if left_out {
+            particles_every = particles_every.max(step);
+        } else if particles_every > 0.0 && particles_every < step * (1.0 - 1e-9) {
+            self.problems.report(
+                &every.place,
+                format!("{particles_every} s"),
+                format!("0 (none), or at least run.step, {step} s"),
+                "snapshots are taken at communication steps: lengthen particles_every or shorten run.step",
+            );
+            return None;
+        }
+        Some(LogSettings {
+            particles_every,
+            required: log.value.required.as_ref()?.value.0,
+        })
+    }
+
+    pub(super) fn schedules(&mut self, inflows: &[Inflow]) -> Vec<Schedule> {
+        let raw = self.raw;
+        let entries = raw.schedule.as_ref().map(|s| &s.value.0);
+        let mut lifted: Vec<Schedule> = Vec::new();
+        for at in entries.into_iter().flatten() {
+            let Some(schedule) = self.schedule(&at.value, inflows) else {
+                continue;
+            };
+            if lifted.iter().any(|s| s.input == schedule.input)
+                && let Some(input) = &at.value.input
+            {
+                self.problems.report(
+                    &input.place,
+                    format!("a second schedule for {}", quote(&input.value.0)),
+                    "one schedule for each input",
+                    "join their points into one",
+                );
+            }
+            lifted.push(schedule);
+        }
+        lifted
+    }
+
+    fn schedule(&mut self, raw: &RawSchedule, inflows: &[Inflow]) -> Option<Schedule> {
+        let input = raw.input.as_ref().and_then(|i| self.input(i));
+        let points = raw.points.as_ref()?;
+        self.check_times_ascend(points);
+        let (target, name) = input?;
+        let (quantity, most) = match target {
+            InputTarget::GateOpening(_) => (Quantity::Ratio, Some(1.0)),
+            InputTarget::InflowRate(_) => {
+                let inflow = inflows.iter().find(|i| i.name == name);
+                (Quantity::MassRate, inflow.map(|i| i.max_rate))
+            }
+        };
+        let mut values = Vec::new();
+        for at in &points.value.0 {
+            values.push((at.value.time, self.series_value(at, quantity, most)?));
+        }
+        Some(Schedule {
+            input: target,
+            points: values,
+            interpolation: match raw.interpolation.as_ref()?.value {
+                InterpolationWord::Linear => Interpolation::Linear,
+                InterpolationWord::Hold => Interpolation::Hold,
+            },
+        })
+    }
+
+    /// A value of the input's quantity and range.
+    fn series_value(
+        &mut self,
+        at: &At<SeriesPoint>,
+        quantity: Quantity,
+        most: Option<f64>,
+    ) -> Option<f64> {
+        let remedy = format!("write for example [0.5, {:?}]", quantity.example());
+        let value = match at.value.value.resolve(quantity) {
+            Ok(value) => value,
+            Err(found) => {
+                self.problems
+                    .report(&at.place, found, quantity.allowed(), remedy);
+                return None;
+            }
+        };
+        let most = most.unwrap_or(f64::INFINITY);
+        if (0.0..=most).contains(&value) {
+            return Some(value);
+        }
+        let unit = if quantity == Quantity::Ratio {
+            ""
+        } else {
+            " kg/s"
+        };
+        self.problems.report(
+            &at.place,
+            format!("a value of {value}{unit}"),
+            format!("0 to {most}{unit}, the range of this input"),
+            "choose a value in this range",
+        );
+        None
+    }
+
+    /// At least one point, from time 0 on, each later than the one before.
+    fn check_times_ascend(&mut self, points: &At<List<SeriesPoint>>) {
+        let Some(first) = points.value.0.first() else {
+            self.problems.report(
+                &points.place,
+                "no points",
+                "at least one point [time, value]",
+                "add for example [0, 1]",
+            );
+            return;
+        };
+        if first.value.time < 0.0 {
+            self.problems.report(
+                &first.place,
+                format!("a time of {} s", first.value.time),
+                "times of 0 s or later",
+                "let the series begin at 0",
+            );
+        }
+        for pair in points.value.0.windows(2) {
+            let (before, after) = (pair[0].value.time, pair[1].value.time);
+            if after <= before {
+                self.problems.report(
+                    &pair[1].place,
+                    format!("{after} s after {before} s"),
+                    "times that ascend",
+                    "sort the points by time; for a jump use two times close together or interpolation = \"hold\"",
+                );
+                return;
+            }
+        }
+    }
+
+    /// `gate.NAME.opening` or `inflow.NAME.rate`.
+    fn input<'t>(&mut self, at: &'t At<crate::scene::raw::Text>) -> Option<(InputTarget, &'t str)> {
+        let raw = self.raw;
+        let parts: Vec<&str> = at.value.0.split('.').collect();
+        match parts[..] {
+            ["gate", name, "opening"] => {
+                let index = self.index_of(name, &at.place, "gates", raw.gates.as_ref())?;
+                Some((InputTarget::GateOpening(index), name))
+            }
+            ["inflow", name, "rate"] => {
+                let index = self.index_of(name, &at.place, "inflows", raw.inflows.as_ref())?;
+                Some((InputTarget::InflowRate(index), name))
+            }
+            _ => {
+                self.problems.report(
+                    &at.place,
+                    format!("text {}", quote(&at.value.0)),
+                    "\"gate.NAME.opening\" or \"inflow.NAME.rate\"",
+                    "write for example \"gate.main.opening\"",
+                );
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! Walls and gates.
+
+use super::geometry::Region;
+use super::{Lift, dot, length, minus, normalized};
+use crate::scene::raw::{At, Entry, Place, RawGate, RawWall, SlipWord};
+use crate::scene::types::{Gate, Point, Slip, Wall, WallGeometry};
+
+/// Rows of wall particles: a gate is at least this many spacings deep.
+const ROWS: f64 = 4.0;
+
+/// A wall, as far as bodies must keep clear of it.
+pub(super) enum Solid {
+    /// Segments with material on the left.
+    Polyline(Vec<([f64; 2], [f64; 2])>),
+    /// A box.
+    Block(Region),
+    /// A plane with material on the side of its normal.
+    Plane { point: Point, normal: Point },
+}
+
+impl From<SlipWord> for Slip {
+    fn from(word: SlipWord) -> Self {
+        match word {
+            SlipWord::NoSlip => Slip::NoSlip,
+            SlipWord::FreeSlip => Slip::FreeSlip,
+        }
+    }
+}
+
+impl Lift<'_> {
+    pub(super) fn walls(&mut self) -> Vec<Wall> {
+        let raw = self.raw;
+        let entries = Self::readable(raw.walls.as_ref());
+        let lift = |(entry, wall)| self.wall(entry, wall);
+        entries.into_iter().filter_map(lift).collect()
+    }
+
+    fn wall(&mut self, entry: &Entry<RawWall>, raw: &RawWall) -> Option<Wall> {
+        let geometry = self.wall_geometry(entry, raw)?;
+        let velocity = match &raw.velocity {
+            Some(at) => {
+                let velocity = self.vector(at)?;
+                self.check_belt(&at.place, &geometry, velocity);
+                velocity
+            }
+            None => [0.0; 3],
+        };
+        Some(Wall {
+            name: entry.name.clone(),
+            geometry,
+            slip: raw.slip.as_ref()?.value.into(),
+            velocity,
+        })
+    }
+
+    /// Exactly one of polyline, box and plane.
+    fn wall_geometry(&mut self, entry: &Entry<RawWall>, raw: &RawWall) -> Option<WallGeometry> {
+        let given = [
+            raw.polyline.as_ref().map(|_| "polyline"),
+            raw.r#box.as_ref().map(|_| "box"),
+            raw.plane.as_ref().map(|_| "plane"),
+        ];
+        self.check_one_of(
+            &entry.place,
+            &given,
+            "polyline, box, plane",
+            "polyline = [[0, 0], [1, 0]]",
+        )?;
+        if let (Some(closed), None) = (&raw.closed, &raw.polyline) {
+            self.problems.report(
+                &closed.place,
+                "closed without a polyline",
+                "closed only beside polyline",
+                "delete it",
+            );
+        }
+        let (geometry, solid) = if raw.polyline.is_some() {
+            self.polyline(raw)?
+        } else if let Some(r#box) = &raw.r#box {
+            let (lower, upper) = self.raw_box(r#box)?;
+            self.check_inside(&r#box.place, lower);
+            self.check_inside(&r#box.place, upper);
+            self.heights
+                .extend([self.height(lower), self.height(upper)]);
+            let solid = Solid::Block(Region::block(self.planar(), lower, upper));
+            (WallGeometry::Box { lower, upper }, solid)
+        } else {
+            let plane = &raw.plane.as_ref()?.value;
+            let point = plane.point.as_ref().and_then(|p| self.point(p));
+            let normal = plane.normal.as_ref().and_then(|n| self.direction(n));
+            let (point, normal) = (point?, normal?);
+            self.heights.push(self.height(point));
+            let geometry = WallGeometry::Plane { point, normal };
+            (geometry, Solid::Plane { point, normal })
+        };
+        self.check_periodic_sides_open(&entry.place, &solid);
+        self.solids.push((entry.place.clone(), solid));
+        Some(geometry)
+    }
+
+    fn polyline(&mut self, raw: &RawWall) -> Option<(WallGeometry, Solid)> {
+        let at = raw.polyline.as_ref()?;
+        let closed = raw.closed.as_ref().is_some_and(|c| c.value.0);
+        let points = self.outline(at, if closed { 3 } else { 2 })?;
+        let eps = self.eps();
+        let mut segments = Vec::new();
+        let count = if closed {
+            points.len()
+        } else {
+            points.len() - 1
+        };
+        for i in 0..count {
+            let next = (i + 1) % points.len();
+            let (a, b) = (points[i], points[next]);
+            if (b[0] - a[0]).hypot(b[1] - a[1]) <= eps {
+                self.problems.report(
+                    &at.value.0[next].place,
+                    "a segment of length 0: the same point as the one before it",
+                    "points apart from each other",
+                    "delete this point",
+                );
+                return None;
+            }
+            segments.push((a, b));
+        }
+        for (corner, [x, y]) in at.value.0.iter().zip(&points) {
+            self.check_inside(&corner.place, [*x, *y, 0.0]);
+            self.heights.push(self.height([*x, *y, 0.0]));
+        }
+        let geometry = WallGeometry::Polyline { points, closed };
+        Some((geometry, Solid::Polyline(segments)))
+    }
+
+    /// The velocity of a wall lies in its surface.
+    fn check_belt(&mut self, place: &Place, geometry: &WallGeometry, velocity: Point) {
+        let speed = length(velocity);
+        let across = match geometry {
+            WallGeometry::Plane { normal, .. } => dot(velocity, *normal).abs(),
+            WallGeometry::Box { .. } => speed,
+            WallGeometry::Polyline { points, .. } => points
+                .windows(2)
+                .filter_map(|w| {
+                    let along = [w[1][0] - w[0][0], w[1][1] - w[0][1], 0.0];
+                    let [x, y, _] = normalized(along)?;
+                    Some((velocity[0] * y - velocity[1] * x).abs())
+                })
+                .fold(0.0, f64::max),
+        };
+        if across > 1e-6 * speed {
+            self.problems.report(
+                place,
+                format!("a velocity with {across} m/s across the surface"),
+                "a velocity along the wall's surface (a belt): straight polylines and planes only",
+                "turn it along the wall; for a wall that moves as a whole use a gate",
+            );
+        }
+    }
+
+    /// No wall lies across a periodic side: material must pass there.
+    fn check_periodic_sides_open(&mut self, place: &Place, solid: &Solid) {
+        let Some(domain) = self.domain.clone() else {
+            return;
+        };
+        let eps = self.eps();
+        for axis in (0..self.axes()).filter(|&a| domain.periodic[a]) {
+            let sides = [domain.lower[axis], domain.upper[axis]];
+            let closes = match solid {
+                Solid::Polyline(segments) => segments.iter().any(|(a, b)| {
+                    let on =
+                        |side: &f64| (a[axis] - side).abs() <= eps && (b[axis] - side).abs() <= eps;
+                    sides.iter().any(on)
+                }),
+                Solid::Plane { normal, .. } => normal[axis].abs() > 1e-6,
+                Solid::Block(_) => false,
+            };
+            if closes {
+                let name = Self::axis_name(axis);
+                self.problems.report(
+                    place,
+                    format!("a wall across the domain's side at {name}, which is periodic"),
+                    format!(
+                        "walls that leave periodic sides open, or no \"{name}\" in domain.periodic"
+                    ),
+                    "delete this part of the wall, or the axis from domain.periodic",
+                );
+            }
+        }
+    }
+
+    pub(super) fn gates(&mut self) -> Vec<Gate> {
+        let raw = self.raw;
+        let entries = Self::readable(raw.gates.as_ref());
+        let lift = |(entry, gate)| self.gate(entry, gate);
+        entries.into_iter().filter_map(lift).collect()
+    }
+
+    fn gate(&mut self, entry: &Entry<RawGate>, raw: &RawGate) -> Option<Gate> {
+        let span = self.span(raw.span.as_ref(), &entry.place);
+        let from = raw.from.as_ref().and_then(|p| self.point(p));
+        let to = raw.to.as_ref().and_then(|p| self.point(p));
+        let thickness = self.thickness(raw);
+        let (from, to, span, spacing) = (from?, to?, span?, self.spacing?);
+        self.check_face(&entry.place, from, to, span);
+        self.heights.extend([self.height(from), self.height(to)]);
+        let gate = Gate {
+            name: entry.name.clone(),
+            from,
+            to,
+            span,
+            thickness: thickness.unwrap_or(ROWS * spacing),
+            max_speed: raw.max_speed.as_ref()?.value.0,
+            start: raw.start.as_ref()?.value.0,
+            slip: raw.slip.as_ref()?.value.into(),
+        };
+        if let (true, Some(plate)) = (self.planar(), plate(&gate)) {
+            self.plates.push((entry.place.clone(), plate));
+        }
+        Some(gate)
+    }
+
+    /// At least four spacings, so that no particle sees through the plate.
+    fn thickness(&mut self, raw: &RawGate) -> Option<f64> {
+        let at: &At<_> = raw.thickness.as_ref()?;
+        let least = ROWS * self.spacing?;
+        if at.value.0 < least * (1.0 - 1e-9) {
+            self.problems.report(
+                &at.place,
+                format!("{} m", at.value.0),
+                format!("at least {least} m, four times numerics.spacing"),
+                "thicken the gate, leave thickness out, or refine numerics.spacing",
+            );
+        }
+        Some(at.value.0)
+    }
+
+    /// A face at least two spacings wide, and in space with two edges that are not parallel.
+    pub(super) fn check_face(
+        &mut self,
+        place: &Place,
+        from: Point,
+        to: Point,
+        span: Point,
+    ) -> bool {
+        let least = 2.0 * self.spacing.unwrap_or(0.0);
+        let edge = minus(to, from);
+        let across = super::cross_product(edge, span);
+        let thin = if self.planar() {
+            length(edge)
+        } else {
+            let longest = length(edge).max(length(span));
+            (length(across) / longest).min(length(edge))
+        };
+        let good = thin >= least && thin > 0.0;
+        if !good {
+            self.problems.report(
+                place,
+                format!("a face {} m wide", if thin.is_nan() { 0.0 } else { thin }),
+                format!(
+                    "at least {least} m, two spacings; in space span is not parallel to from - to"
+                ),
+                "move from and to apart, or refine numerics.spacing",
+            );
+        }
+        good
+    }
+}
+
+/// The plate where it covers its gap at the start; `None` if it is open.
+fn plate(gate: &Gate) -> Option<Region> {
+    if gate.start >= 1.0 {
+        return None;
+    }
+    let edge = minus(gate.to, gate.from);
+    let [x, y, _] = normalized(edge)?;
+    // To the right of the way from `from` to `to`.
+    let deep = [y * gate.thickness, -x * gate.thickness];
+    let a = [
+        gate.from[0] + gate.start * edge[0],
+        gate.from[1] + gate.start * edge[1],
+    ];
+    let b = [gate.to[0], gate.to[1]];
+    Some(Region::Polygon(vec![
+        a,
+        [a[0] + deep[0], a[1] + deep[1]],
+        [b[0] + deep[0], b[1] + deep[1]],
+        b,
+    ]))
+}

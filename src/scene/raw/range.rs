@@ -1,0 +1,86 @@
+//! Ranges of numbers: checked when a scene is read, stated in its schema and in messages.
+
+use serde_json::{Map, Value, json};
+
+/// An interval; each end may be open, closed or absent (infinite).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    lower: f64,
+    upper: f64,
+    lower_open: bool,
+}
+
+impl Range {
+    /// Above `lower`.
+    pub(super) const fn above(lower: f64) -> Self {
+        Self {
+            lower,
+            upper: f64::INFINITY,
+            lower_open: true,
+        }
+    }
+
+    /// `lower` or more.
+    pub(super) const fn from(lower: f64) -> Self {
+        Self {
+            lower,
+            upper: f64::INFINITY,
+            lower_open: false,
+        }
+    }
+
+    /// From `lower` to `upper`, ends included.
+    pub(super) const fn within(lower: f64, upper: f64) -> Self {
+        Self {
+            lower,
+            upper,
+            lower_open: false,
+        }
+    }
+
+    /// Above `lower` and at most `upper`.
+    pub(super) const fn above_to(lower: f64, upper: f64) -> Self {
+        Self {
+            lower,
+            upper,
+            lower_open: true,
+        }
+    }
+
+    /// Whether a number lies inside.
+    pub(super) fn contains(self, number: f64) -> bool {
+        let low = if self.lower_open {
+            number > self.lower
+        } else {
+            number >= self.lower
+        };
+        low && number <= self.upper
+    }
+
+    /// In words, with a unit.
+    pub(super) fn text(self, unit: &str) -> String {
+        let unit = if unit == "1" { "" } else { unit };
+        let (lower, upper) = (self.lower, self.upper);
+        let text = match (self.lower_open, self.upper.is_finite()) {
+            (true, false) => format!("above {lower} {unit}"),
+            (false, false) => format!("{lower} {unit} or more"),
+            (true, true) => format!("above {lower} and at most {upper} {unit}"),
+            (false, true) => format!("{lower} to {upper} {unit}"),
+        };
+        text.replace("  ", " ").trim().to_owned()
+    }
+
+    /// States it in a JSON Schema: for numbers as limits, for people as text.
+    pub(super) fn describe(self, unit: &str, schema: &mut Map<String, Value>) {
+        let key = if self.lower_open {
+            "exclusiveMinimum"
+        } else {
+            "minimum"
+        };
+        schema.insert(key.into(), json!(self.lower));
+        if self.upper.is_finite() {
+            schema.insert("maximum".into(), json!(self.upper));
+        }
+        schema.insert("x-range".into(), json!(self.text(unit)));
+    }
+}

@@ -1,0 +1,406 @@
+//! The tables of a scene file, in the order people write them.
+
+use super::*;
+
+table! {
+    /// A scene: everything a case file says.
+    RawScene {
+        /// Identifier of the scene; names its FMU and its keys on the bus.
+        required name: Name;
+        /// One line for people.
+        optional title: Text, default "";
+        /// Number of space dimensions: 2 (plane strain, x and y) or 3.
+        optional dimension: Whole, in Range::within(2.0, 3.0), default 2;
+        /// Extent, periodic sides, width and gravity.
+        required domain: RawDomain;
+        /// Resolution and every numerical choice.
+        required numerics: RawNumerics;
+        /// Materials by name.
+        required materials: Named<RawMaterial>;
+        /// Material that is there at the start, by name.
+        optional bodies: Named<RawBody>;
+        /// Fixed walls, by name.
+        optional walls: Named<RawWall>;
+        /// Plates that slide to open a gap, by name; the opening is the input gate.NAME.opening.
+        optional gates: Named<RawGate>;
+        /// Sources of material, by name; the rate is the input inflow.NAME.rate.
+        optional inflows: Named<RawInflow>;
+        /// Boxes in which material is taken out and counted, by name.
+        optional outflows: Named<RawOutflow>;
+        /// What is measured, by name.
+        optional gauges: Named<RawGauge>;
+        /// Communication step and end time.
+        required run: RawRun;
+        /// What inputs are told over time when no orchestrator sets them; an array of tables.
+        optional schedule: List<RawSchedule>;
+        /// What a run writes to its log.
+        optional log: RawLog;
+    }
+}
+
+table! {
+    /// Extent and gravity.
+    RawDomain {
+        /// Lower corner; a particle that leaves the domain other than by an outflow or a periodic side is an error.
+        required lower: Coordinates<Length>;
+        /// Upper corner.
+        required upper: Coordinates<Length>;
+        /// Axes along which the domain repeats itself.
+        optional periodic: List<Axis>;
+        /// Out-of-plane width of a planar scene (1 m if left out): masses, forces and discharges are for this width.
+        optional width: Length, in Range::above(0.0);
+        /// Gravitational acceleration: its size, downwards along the last axis, or a vector.
+        optional gravity: Gravity, default "9.81 m/s^2";
+        /// Slope of the bed: turns gravity towards +x, so that a bed along x is an inclined plane. Not with a gravity vector.
+        optional slope: Angle, in Range::within(-std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2);
+    }
+}
+
+choice! {
+    /// An axis.
+    Axis {
+        /// First axis.
+        "x" => X,
+        /// Second axis.
+        "y" => Y,
+        /// Third axis, in space.
+        "z" => Z,
+    }
+}
+
+table! {
+    /// Resolution and every numerical choice.
+    RawNumerics {
+        /// Particle spacing dp: the resolution. Bodies are filled on a lattice of this spacing, the first row half a spacing inside.
+        required spacing: Length, in Range::above(0.0);
+        /// Smoothing length over particle spacing.
+        optional smoothing_ratio: Ratio, in Range::within(1.2, 2.5), default 1.6;
+        /// Artificial sound speed c0; if left out, 10 max(sqrt(g H), expected_speed), H the greatest height of material.
+        optional sound_speed: Speed, in Range::above(0.0);
+        /// Largest speed that the flow is expected to reach; raises the sound speed. Give it when material moves faster than sqrt(g H).
+        optional expected_speed: Speed, in Range::from(0.0), default 0;
+        /// How viscous stress is integrated in time.
+        optional scheme: SchemeWord, default "implicit";
+        /// Acoustic Courant number: internal step over h/c0.
+        optional courant: Ratio, in Range::above_to(0.0, 1.0), default 0.5;
+        /// Cap of the viscosity: at most cap_time x mu_s x pressure. Longer creeps less at rest.
+        optional cap_time: Time, in Range::above(0.0), default "20 s";
+        /// Density diffusion; 0 switches it off.
+        optional density_diffusion: Ratio, in Range::within(0.0, 1.0), default 0.1;
+        /// Time scale that switches density diffusion off where material rests.
+        optional diffusion_gate_time: Time, in Range::from(0.0), default "0.3 s";
+        /// Relaxation time of the strain rate in the pressure law; 20 to 200 ms is useful.
+        optional strain_relaxation_time: Time, in Range::above(0.0), default "50 ms";
+        /// Share of viscous stress carried pair by pair, against zero-energy modes.
+        optional pair_viscosity_share: Ratio, in Range::within(0.0, 1.0), default 0.1;
+        /// Artificial viscosity alpha.
+        optional artificial_viscosity: Ratio, in Range::within(0.0, 10.0), default 0;
+        /// Relative tolerance of the viscous solve.
+        optional solver_tolerance: Ratio, in Range::within(1e-14, 0.1), default 1e-4;
+        /// Most iterations of a viscous solve.
+        optional solver_max_iterations: Whole, in Range::within(1.0, 1e6), default 500;
+        /// Random displacement of the starting lattice, over the spacing.
+        optional jitter: Ratio, in Range::within(0.0, 0.4), default 0.1;
+        /// Seed of that displacement.
+        optional seed: Whole, default 1;
+    }
+}
+
+choice! {
+    /// Time integration.
+    SchemeWord {
+        /// implicit viscosity, steps bounded by sound only
+        "implicit" => Implicit,
+        /// explicit pair viscosity, steps bounded by viscosity
+        "explicit" => Explicit,
+    }
+}
+
+tagged! {
+    /// A material: a law and its parameters.
+    RawMaterial by law {
+        "mu_i" => MuI(RawMuI),
+    }
+}
+
+table! {
+    /// Dense granular flow, friction mu(I). Start from a preset and override what differs, or give every value.
+    RawMuI {
+        /// Values to start from.
+        optional preset: Preset;
+        /// Friction angle at vanishing shear rate; tan of it is mu_s.
+        optional static_friction_angle: Angle, in Range::above_to(0.0, 1.25);
+        /// Friction angle at large shear rate, not below the static one; tan of it is mu_2.
+        optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
+        /// Inertial number I0 at which friction is half way between the two.
+        optional inertial_number_scale: Ratio, in Range::above(0.0);
+        /// Grain diameter.
+        optional grain_diameter: Length, in Range::above(0.0);
+        /// Density of the grains' own material.
+        optional grain_density: Density, in Range::above(0.0);
+        /// Largest volume fraction of grains (0.6 if left out).
+        optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
+        /// Smallest volume fraction of grains in dense flow, below phi_max (0.5 if left out).
+        optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
+    }
+}
+
+choice! {
+    /// Measured materials.
+    Preset {
+        /// glass beads of 0.5 mm, 20.90 and 32.76 deg, I0 0.279, 2500 kg/m^3
+        "glass_beads" => GlassBeads,
+        /// sand of 0.8 mm, 27.00 and 43.40 deg, I0 1.09, 2600 kg/m^3
+        "sand_08" => Sand08,
+        /// sand of 0.4 mm, 30.50 and 51.30 deg, I0 2.65, 2600 kg/m^3
+        "sand_04" => Sand04,
+    }
+}
+
+table! {
+    /// Material that is there at the start. Exactly one of box, polygon and column says where.
+    RawBody {
+        /// Name of its material.
+        required material: Text;
+        /// An axis-aligned box.
+        optional r#box: RawBox;
+        /// Planar: corners of a simple polygon, in order.
+        optional polygon: List<Coordinates<Length>>;
+        /// Space: an upright round column.
+        optional column: RawColumn;
+        /// Fills the shape only below this height: a reservoir filled to a level.
+        optional level: Length;
+        /// Velocity at the start.
+        optional velocity: Coordinates<Speed>;
+    }
+}
+
+table! {
+    /// An axis-aligned box.
+    RawBox {
+        /// Lower corner.
+        required lower: Coordinates<Length>;
+        /// Upper corner.
+        required upper: Coordinates<Length>;
+    }
+}
+
+table! {
+    /// An upright round column.
+    RawColumn {
+        /// Centre of its base.
+        required base: Coordinates<Length>;
+        /// Radius.
+        required radius: Length, in Range::above(0.0);
+        /// Height along z.
+        required height: Length, in Range::above(0.0);
+    }
+}
+
+choice! {
+    /// What a wall does to material that slides along it.
+    SlipWord {
+        /// material sticks to the wall
+        "no_slip" => NoSlip,
+        /// no shear stress at the wall
+        "free_slip" => FreeSlip,
+    }
+}
+
+table! {
+    /// A fixed wall. Exactly one of polyline, box and plane says where.
+    RawWall {
+        /// Planar: a chain of points with the material on its left; the wall lies on its right, four particle rows deep.
+        optional polyline: List<Coordinates<Length>>;
+        /// Whether the polyline's last point joins the first.
+        optional closed: Flag;
+        /// A solid box, an obstacle.
+        optional r#box: RawBox;
+        /// A plane, with material on the side of its normal.
+        optional plane: RawPlane;
+        /// Whether material sticks or slides.
+        optional slip: SlipWord, default "no_slip";
+        /// Velocity of the wall's surface, along the surface: a belt. The wall itself stays.
+        optional velocity: Coordinates<Speed>;
+    }
+}
+
+table! {
+    /// A plane.
+    RawPlane {
+        /// A point of the plane.
+        required point: Coordinates<Length>;
+        /// Normal towards the material, of any length.
+        required normal: Coordinates<Ratio>;
+    }
+}
+
+table! {
+    /// A plate that slides along its own length. Its face runs from `from` to `to` with material on the left; opening o uncovers the share o next to `from`, and the plate retracts beyond `to`.
+    RawGate {
+        /// End that opens first.
+        required from: Coordinates<Length>;
+        /// End towards which the plate retracts.
+        required to: Coordinates<Length>;
+        /// In space: the vector along which the face is extruded.
+        optional span: Coordinates<Length>;
+        /// Depth of the plate behind its face, at least 4 spacings; 4 spacings if left out.
+        optional thickness: Length, in Range::above(0.0);
+        /// Largest speed of the plate.
+        optional max_speed: Speed, in Range::above(0.0), default "0.5 m/s";
+        /// Opening at the start: 0 closed, 1 open.
+        optional start: Ratio, in Range::within(0.0, 1.0), default 0;
+        /// Whether material sticks to its faces.
+        optional slip: SlipWord, default "free_slip";
+    }
+}
+
+table! {
+    /// A source: rows of particles enter through the face from `from` to `to`, on its left side, at a set velocity.
+    RawInflow {
+        /// Name of the material that enters.
+        required material: Text;
+        /// One end of the face; in space one corner.
+        required from: Coordinates<Length>;
+        /// Other end of the face; in space the corner next to it.
+        required to: Coordinates<Length>;
+        /// In space: the face's second edge, from `from`.
+        optional span: Coordinates<Length>;
+        /// Velocity of entering material; it points to the left of the way from `from` to `to` (in space: along (to - from) x span).
+        required velocity: Coordinates<Speed>;
+        /// Rate at the start.
+        optional rate: MassRate, in Range::from(0.0), default 0;
+    }
+}
+
+table! {
+    /// A box in which particles are taken out and counted.
+    RawOutflow {
+        /// Lower corner.
+        required lower: Coordinates<Length>;
+        /// Upper corner.
+        required upper: Coordinates<Length>;
+    }
+}
+
+tagged! {
+    /// Something measured; outputs are gauge.NAME.*.
+    RawGauge by kind {
+        "depth" => Depth(RawDepth),
+        "profile" => Profile(RawProfile),
+        "discharge" => Discharge(RawDischarge),
+        "force" => Force(RawForce),
+        "pressure" => Pressure(RawPressure),
+        "front" => Front(RawFront),
+    }
+}
+
+table! {
+    /// Depth along a line: from the foot to the highest point of material on it.
+    RawDepth {
+        /// Foot of the line, on the bed.
+        required foot: Coordinates<Length>;
+        /// Direction of the line, of any length; upwards along the last axis if left out.
+        optional up: Coordinates<Ratio>;
+        /// Length of the line; up to the domain's edge if left out.
+        optional length: Length, in Range::above(0.0);
+    }
+}
+
+table! {
+    /// Depths at evenly spaced feet: a surface profile.
+    RawProfile {
+        /// First foot.
+        required from: Coordinates<Length>;
+        /// Last foot.
+        required to: Coordinates<Length>;
+        /// Number of feet.
+        required count: Whole, in Range::within(2.0, 10_000.0);
+        /// Direction of the lines, of any length; upwards along the last axis if left out.
+        optional up: Coordinates<Ratio>;
+        /// Length of the lines; up to the domain's edge if left out.
+        optional length: Length, in Range::above(0.0);
+    }
+}
+
+table! {
+    /// Mass that crosses a section from the left of the way `from` - `to` to its right, per time.
+    RawDischarge {
+        /// One end of the section; in space one corner.
+        required from: Coordinates<Length>;
+        /// Other end; in space the corner next to it.
+        required to: Coordinates<Length>;
+        /// In space: the section's second edge, from `from`.
+        optional span: Coordinates<Length>;
+    }
+}
+
+table! {
+    /// Force of the material on a wall or gate, mean over the communication step.
+    RawForce {
+        /// The wall or gate: wall.NAME or gate.NAME.
+        required on: Text;
+    }
+}
+
+table! {
+    /// Pressure at a point.
+    RawPressure {
+        /// The point.
+        required at: Coordinates<Length>;
+    }
+}
+
+table! {
+    /// Outermost position of material along a direction.
+    RawFront {
+        /// Where distances start, on the bed.
+        required origin: Coordinates<Length>;
+        /// Direction along the bed, of any length.
+        required direction: Coordinates<Ratio>;
+        /// Direction of depth, of any length; upwards along the last axis if left out.
+        optional up: Coordinates<Ratio>;
+    }
+}
+
+table! {
+    /// Times of a run.
+    RawRun {
+        /// Communication step: inputs are read and gauges sampled this often.
+        required step: Time, in Range::above(0.0);
+        /// End of a run without an orchestrator, and default stop time of the FMU.
+        required until: Time, in Range::above(0.0);
+    }
+}
+
+table! {
+    /// What an input is told over time when nobody else sets it.
+    RawSchedule {
+        /// The input: gate.NAME.opening or inflow.NAME.rate.
+        required input: Text;
+        /// Points [time, value] in ascending time; the first value holds before, the last after them.
+        required points: List<SeriesPoint>;
+        /// Between points: a straight line, or hold the earlier value.
+        optional interpolation: InterpolationWord, default "linear";
+    }
+}
+
+choice! {
+    /// How a schedule goes from point to point.
+    InterpolationWord {
+        /// straight lines between points
+        "linear" => Linear,
+        /// hold the earlier value
+        "hold" => Hold,
+    }
+}
+
+table! {
+    /// What a run writes to its log.
+    RawLog {
+        /// Particle snapshots every so many seconds of simulated time; 0 writes none.
+        optional particles_every: Time, in Range::from(0.0), default "50 ms";
+        /// Whether a run stops when its log cannot be written.
+        optional required: Flag, default true;
+    }
+}

@@ -1,0 +1,529 @@
+//! Values that may stand behind a key: quantities, points, words, lists, named sections.
+
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use toml::de::DeValue;
+
+use super::read::{At, Field, Node, Place, Problems, describe, nearest};
+use crate::units::{self, Quantity, quote};
+
+/// A quantity's type: says which quantity it is.
+pub(in crate::scene) trait Scalar: Field {
+    /// The quantity.
+    const QUANTITY: Quantity;
+    /// Its SI value.
+    fn si(&self) -> f64;
+}
+
+macro_rules! scalars {
+    ($($(#[doc = $doc:literal])+ $name:ident => $quantity:expr;)*) => {$(
+        $(#[doc = $doc])+
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub(in crate::scene) struct $name(pub(in crate::scene) f64);
+
+        impl Scalar for $name {
+            const QUANTITY: Quantity = $quantity;
+            fn si(&self) -> f64 {
+                self.0
+            }
+        }
+
+        impl Field for $name {
+            fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+                read_quantity(node, $quantity, problems).map(Self)
+            }
+            fn numbers(&self) -> Vec<f64> {
+                vec![self.0]
+            }
+            fn unit() -> &'static str {
+                $quantity.si()
+            }
+            fn example() -> String {
+                format!("{:?}", $quantity.example())
+            }
+        }
+
+        impl JsonSchema for $name {
+            fn inline_schema() -> bool {
+                true
+            }
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                quantity_schema($quantity)
+            }
+        }
+    )*};
+}
+
+scalars! {
+    /// A length [m].
+    Length => Quantity::Length;
+    /// A time [s].
+    Time => Quantity::Time;
+    /// An angle [rad].
+    Angle => Quantity::Angle;
+    /// A speed [m/s].
+    Speed => Quantity::Velocity;
+    /// An acceleration [m/s^2].
+    Acceleration => Quantity::Acceleration;
+    /// Mass per time [kg/s].
+    MassRate => Quantity::MassRate;
+    /// A density [kg/m^3].
+    Density => Quantity::Density;
+    /// A number \[1\].
+    Ratio => Quantity::Ratio;
+}
+
+fn quantity_schema(quantity: Quantity) -> Schema {
+    let symbols: Vec<_> = quantity.symbols().collect();
+    json_schema!({
+        "type": ["number", "string"],
+        "examples": [quantity.example()],
+        "x-quantity": quantity.name(),
+        "x-units": symbols
+    })
+}
+
+/// A finite number, if the value is one.
+fn number(value: &DeValue) -> Option<f64> {
+    let parsed: f64 = match value {
+        DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok()?,
+        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok()? as f64,
+        DeValue::Float(f) => f.as_str().parse().ok()?,
+        _ => return None,
+    };
+    parsed.is_finite().then_some(parsed)
+}
+
+fn read_quantity(node: &Node, quantity: Quantity, problems: &mut Problems) -> Option<f64> {
+    let found = match node.value() {
+        DeValue::String(text) => match units::parse(text, quantity) {
+            Ok(value) => return Some(value),
+            Err(error) => error.found,
+        },
+        other => match number(other) {
+            Some(value) => return Some(value),
+            None => describe(other),
+        },
+    };
+    let remedy = format!("write for example {:?}", quantity.example());
+    problems.report(node.place(), found, quantity.allowed(), remedy);
+    None
+}
+
+/// A whole number, 0 or more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::scene) struct Whole(pub(in crate::scene) u64);
+
+impl Field for Whole {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        let value = match node.value() {
+            DeValue::Integer(i) => u64::from_str_radix(i.as_str(), i.radix()).ok(),
+            _ => None,
+        };
+        if value.is_none() {
+            let found = describe(node.value());
+            let allowed = "a whole number, 0 or more";
+            problems.report(node.place(), found, allowed, "write for example 500");
+        }
+        value.map(Self)
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        vec![self.0 as f64]
+    }
+}
+
+/// True or false.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::scene) struct Flag(pub(in crate::scene) bool);
+
+impl Field for Flag {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        let value = node.value().as_bool();
+        if value.is_none() {
+            let found = describe(node.value());
+            problems.report(
+                node.place(),
+                found,
+                "true or false",
+                "write true or false without quotes",
+            );
+        }
+        value.map(Self)
+    }
+}
+
+/// Any text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::scene) struct Text(pub(in crate::scene) String);
+
+impl Field for Text {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        read_text(node, problems).map(|text| Self(text.to_owned()))
+    }
+
+    fn example() -> String {
+        "\"text\"".to_owned()
+    }
+}
+
+fn read_text<'a>(node: &Node<'a>, problems: &mut Problems) -> Option<&'a str> {
+    let text = node.value().as_str();
+    if text.is_none() {
+        let found = describe(node.value());
+        problems.report(
+            node.place(),
+            found,
+            "text in quotes",
+            "put it in double quotes",
+        );
+    }
+    text
+}
+
+/// Letters, digits and underscores, beginning with a letter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::scene) struct Name(pub(in crate::scene) String);
+
+/// Longest name: names become FMI variable names and Zenoh keys.
+const LONGEST_NAME: usize = 48;
+
+fn check_name(name: &str, place: &Place, problems: &mut Problems) -> bool {
+    let letters = name
+        .bytes()
+        .all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_');
+    let start = name.bytes().next().is_some_and(|b| b.is_ascii_lowercase());
+    let good = letters && start && name.len() <= LONGEST_NAME;
+    if !good {
+        problems.report(
+            place,
+            format!("the name {}", quote(name)),
+            format!(
+                "lower-case letters a-z, digits and _, beginning with a letter, at most {LONGEST_NAME} characters"
+            ),
+            "rename it, for example main_gate",
+        );
+    }
+    good
+}
+
+impl Field for Name {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        let text = read_text(node, problems)?;
+        check_name(text, node.place(), problems).then(|| Self(text.to_owned()))
+    }
+
+    fn example() -> String {
+        "\"my_scene\"".to_owned()
+    }
+}
+
+/// A number, or text that a later check reads as a quantity known only then.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::scene) enum Loose {
+    /// A plain number.
+    Number(f64),
+    /// A number with a unit.
+    Text(String),
+}
+
+impl Loose {
+    /// Its SI value as `quantity`, or a message what was found.
+    pub(in crate::scene) fn resolve(&self, quantity: Quantity) -> Result<f64, String> {
+        match self {
+            Loose::Number(n) => Ok(*n),
+            Loose::Text(text) => units::parse(text, quantity).map_err(|e| e.found),
+        }
+    }
+}
+
+impl Field for Loose {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        let value = match node.value() {
+            DeValue::String(text) => Some(Self::Text(text.to_string())),
+            other => number(other).map(Self::Number),
+        };
+        if value.is_none() {
+            let found = describe(node.value());
+            problems.report(
+                node.place(),
+                found,
+                "a finite number, or text with a unit",
+                "write for example 0.5 or \"0.5 kg/s\"",
+            );
+        }
+        value
+    }
+}
+
+/// A point or vector of two or three values.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::scene) struct Coordinates<Q> {
+    /// Two or three SI values.
+    pub(in crate::scene) values: Vec<f64>,
+    quantity: PhantomData<Q>,
+}
+
+impl<Q: Scalar> Field for Coordinates<Q> {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        let elements = node.elements().unwrap_or_default();
+        if !(2..=3).contains(&elements.len()) {
+            let one = Q::QUANTITY.allowed();
+            problems.report(
+                node.place(),
+                describe(node.value()),
+                format!("[x, y] in a planar scene, [x, y, z] in space; each {one}"),
+                "write for example [0.1, \"20 mm\"]".to_owned(),
+            );
+            return None;
+        }
+        let values: Vec<f64> = elements
+            .iter()
+            .filter_map(|e| Q::read(e, problems).map(|q| q.si()))
+            .collect();
+        (values.len() == elements.len()).then_some(Self {
+            values,
+            quantity: PhantomData,
+        })
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        self.values.clone()
+    }
+
+    fn unit() -> &'static str {
+        Q::QUANTITY.si()
+    }
+
+    fn example() -> String {
+        "[0, 0]".to_owned()
+    }
+}
+
+/// An acceleration along "down", or a whole vector.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::scene) enum Gravity {
+    /// Its size; `slope` turns it.
+    Size(f64),
+    /// Its components [m/s^2].
+    Vector(Coordinates<Acceleration>),
+}
+
+impl Field for Gravity {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        if node.elements().is_some() {
+            return Coordinates::read(node, problems).map(Self::Vector);
+        }
+        Acceleration::read(node, problems).map(|a| Self::Size(a.0))
+    }
+
+    fn example() -> String {
+        Acceleration::example()
+    }
+}
+
+/// A list of values; at most [`LONGEST_LIST`].
+#[derive(Clone, Debug)]
+pub(in crate::scene) struct List<T>(pub(in crate::scene) Vec<At<T>>);
+
+/// Longest list read: enough for a measured time series.
+const LONGEST_LIST: usize = 100_000;
+
+impl<T: Field> Field for List<T> {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        let elements = node.elements();
+        let Some(elements) = elements.filter(|e| e.len() <= LONGEST_LIST) else {
+            problems.report(
+                node.place(),
+                describe(node.value()),
+                format!("an array of at most {LONGEST_LIST} values"),
+                "write it as [value, value, ...]",
+            );
+            return None;
+        };
+        let read: Vec<_> = elements
+            .iter()
+            .filter_map(|e| {
+                let place = e.place().clone();
+                T::read(e, problems).map(|value| At { value, place })
+            })
+            .collect();
+        (read.len() == elements.len()).then_some(Self(read))
+    }
+}
+
+/// One point of a time series: `[time, value]`.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::scene) struct SeriesPoint {
+    /// Time [s].
+    pub(in crate::scene) time: f64,
+    /// Value; its quantity depends on the input.
+    pub(in crate::scene) value: Loose,
+}
+
+impl Field for SeriesPoint {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        let elements = node.elements().unwrap_or_default();
+        let [time, value] = &elements[..] else {
+            problems.report(
+                node.place(),
+                describe(node.value()),
+                "[time, value]",
+                "write for example [\"0.5 s\", 1]",
+            );
+            return None;
+        };
+        let time = Time::read(time, problems);
+        let value = Loose::read(value, problems);
+        Some(Self {
+            time: time?.0,
+            value: value?,
+        })
+    }
+}
+
+/// Sections that the scene's author names: `[gates.main]`.
+#[derive(Clone, Debug)]
+pub(in crate::scene) struct Named<T>(pub(in crate::scene) Vec<Entry<T>>);
+
+/// A named section.
+#[derive(Clone, Debug)]
+pub(in crate::scene) struct Entry<T> {
+    /// Its name.
+    pub(in crate::scene) name: String,
+    /// Where it stands.
+    pub(in crate::scene) place: Place,
+    /// What it says; `None` if that could not be read, which has been reported.
+    pub(in crate::scene) value: Option<T>,
+}
+
+impl<T: Field> Field for Named<T> {
+    fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        let mut entries = Vec::new();
+        for (name, node) in node.entries(problems)? {
+            check_name(name, node.place(), problems);
+            entries.push(Entry {
+                name: name.to_owned(),
+                place: node.place().clone(),
+                value: T::read(&node, problems),
+            });
+        }
+        Some(Self(entries))
+    }
+}
+
+/// Reads one of a few words; reports anything else with the nearest.
+pub(super) fn read_word(
+    node: &Node,
+    words: &[&'static str],
+    problems: &mut Problems,
+) -> Option<&'static str> {
+    let text = node.value().as_str();
+    let word = text.and_then(|t| words.iter().find(|w| **w == t));
+    if word.is_none() {
+        let near = text.and_then(|t| nearest(t, words.iter().copied()));
+        let remedy = match near {
+            Some(near) => format!("did you mean \"{near}\"?"),
+            None => "choose one of these".to_owned(),
+        };
+        let quoted: Vec<_> = words.iter().map(|w| format!("\"{w}\"")).collect();
+        problems.report(
+            node.place(),
+            describe(node.value()),
+            quoted.join(", "),
+            remedy,
+        );
+    }
+    word.copied()
+}
+
+/// Reads the key that tells tables apart.
+pub(super) fn choose(
+    tag: &str,
+    words: &[&'static str],
+    table: &Node,
+    entries: &[(&str, Node)],
+    problems: &mut Problems,
+) -> Option<&'static str> {
+    if let Some((_, node)) = entries.iter().find(|(name, _)| *name == tag) {
+        return read_word(node, words, problems);
+    }
+    let quoted: Vec<_> = words.iter().map(|w| format!("\"{w}\"")).collect();
+    problems.report(
+        &table.place().child(tag),
+        "nothing",
+        quoted.join(", "),
+        format!("add {tag} = {}", quoted[0]),
+    );
+    None
+}
+
+macro_rules! schemas {
+    ($( [$($generic:ident : $bound:ident)?] $ty:ty, $name:expr, $schema:tt; )*) => {$(
+        impl $(<$generic: $bound>)? JsonSchema for $ty {
+            fn inline_schema() -> bool {
+                true
+            }
+            fn schema_name() -> Cow<'static, str> {
+                $name.into()
+            }
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!($schema)
+            }
+        }
+    )*};
+}
+
+schemas! {
+    [] Whole, "Whole", { "type": "integer", "minimum": 0 };
+    [] Flag, "Flag", { "type": "boolean" };
+    [] Text, "Text", { "type": "string" };
+    [] Name, "Name", { "type": "string", "pattern": "^[a-z][a-z0-9_]*$", "maxLength": LONGEST_NAME };
+    [] Loose, "Loose", { "type": ["number", "string"] };
+    [Q: Scalar] Coordinates<Q>, format!("Coordinates of {}", Q::QUANTITY.name()), {
+        "type": "array",
+        "items": quantity_schema(Q::QUANTITY),
+        "minItems": 2,
+        "maxItems": 3
+    };
+    [] Gravity, "Gravity", { "anyOf": [
+        quantity_schema(Quantity::Acceleration),
+        { "type": "array", "items": quantity_schema(Quantity::Acceleration), "minItems": 2, "maxItems": 3 }
+    ] };
+    [] SeriesPoint, "SeriesPoint", { "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": ["number", "string"] } };
+}
+
+impl<T: Field> JsonSchema for List<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        format!("List of {}", T::schema_name()).into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let items = generator.subschema_for::<T>();
+        json_schema!({ "type": "array", "items": items, "maxItems": LONGEST_LIST })
+    }
+}
+
+impl<T: Field> JsonSchema for Named<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        format!("Named {}", T::schema_name()).into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let item = generator.subschema_for::<T>();
+        json_schema!({
+            "type": "object",
+            "patternProperties": { "^[a-z][a-z0-9_]*$": item },
+            "additionalProperties": false
+        })
+    }
+}
