@@ -1,0 +1,204 @@
+//! Values between the typed functions of the standards and the component's plain f64.
+
+use sandgate::component::{Component, ValueKind};
+
+use crate::fault::Fault;
+use crate::guard::{Out, Plain};
+use crate::instance::Instance;
+
+/// A type that values of one kind of variable have at the border.
+pub(crate) trait Value: Copy {
+    /// Variables that take it.
+    const KIND: ValueKind;
+    /// Into the component; refuses what the kind does not hold.
+    fn enter(self) -> Result<f64, String>;
+    /// Out of the component.
+    fn leave(value: f64) -> Result<Self, String>;
+}
+
+impl Value for f64 {
+    const KIND: ValueKind = ValueKind::Real;
+
+    fn enter(self) -> Result<f64, String> {
+        Ok(self)
+    }
+
+    fn leave(value: f64) -> Result<Self, String> {
+        Ok(value)
+    }
+}
+
+/// FMI 2's Integer and Enumeration.
+impl Value for i32 {
+    const KIND: ValueKind = ValueKind::Integer;
+
+    fn enter(self) -> Result<f64, String> {
+        Ok(f64::from(self))
+    }
+
+    fn leave(value: f64) -> Result<Self, String> {
+        let inside = (f64::from(Self::MIN)..=f64::from(Self::MAX)).contains(&value);
+        if inside {
+            // In range and whole: nothing is lost.
+            Ok(value as Self)
+        } else {
+            Err(format!(
+                "{value} does not fit FMI 2's Integer; FMI 3 has Int64"
+            ))
+        }
+    }
+}
+
+/// FMI 3's Int64 and Enumeration.
+impl Value for i64 {
+    const KIND: ValueKind = ValueKind::Integer;
+
+    fn enter(self) -> Result<f64, String> {
+        let value = self as f64;
+        if self.unsigned_abs() <= 1 << 53 {
+            Ok(value)
+        } else {
+            Err(format!("{self} is beyond 2^53"))
+        }
+    }
+
+    fn leave(value: f64) -> Result<Self, String> {
+        // Counts stay far below 2^53: whole and in range.
+        Ok(value as Self)
+    }
+}
+
+/// A Boolean as the number it is in C: `int` in FMI 2, `bool` (one byte) in FMI 3.
+#[derive(Clone, Copy)]
+pub(crate) struct Flag(bool);
+
+impl Flag {
+    /// 0 or 1.
+    pub(crate) fn from_number(number: i64) -> Result<Self, String> {
+        match number {
+            0 => Ok(Self(false)),
+            1 => Ok(Self(true)),
+            other => Err(format!("found {other}, a Boolean is 0 or 1")),
+        }
+    }
+
+    /// 0 or 1.
+    pub(crate) fn number(self) -> u8 {
+        u8::from(self.0)
+    }
+}
+
+impl Value for Flag {
+    const KIND: ValueKind = ValueKind::Boolean;
+
+    fn enter(self) -> Result<f64, String> {
+        Ok(f64::from(self.number()))
+    }
+
+    fn leave(value: f64) -> Result<Self, String> {
+        Ok(Self(value != 0.0))
+    }
+}
+
+/// Reads variables of kind `V` into `count` places; `make` turns each value into what C holds.
+pub(crate) fn get<V: Value, C: Plain>(
+    instance: &mut Instance,
+    references: &[u32],
+    out: &mut Out<C>,
+    count: usize,
+    make: impl Fn(V) -> C,
+) -> Result<(), Fault> {
+    check(&instance.component, references, V::KIND, count)?;
+    instance.values.clear();
+    instance.values.resize(count, 0.0);
+    instance.component.get(references, &mut instance.values)?;
+    let made: Result<Vec<C>, String> = instance
+        .values
+        .iter()
+        .map(|value| V::leave(*value).map(&make))
+        .collect();
+    out.write(&made.map_err(Fault::Border)?, "values")
+}
+
+/// Sets variables of kind `V`, all or none; `make` turns what C holds into a value.
+pub(crate) fn set<V: Value, C: Copy>(
+    instance: &mut Instance,
+    references: &[u32],
+    values: &[C],
+    make: impl Fn(C) -> Result<V, String>,
+) -> Result<(), Fault> {
+    check(&instance.component, references, V::KIND, values.len())?;
+    let entered: Result<Vec<f64>, String> = values
+        .iter()
+        .map(|value| make(*value).and_then(V::enter))
+        .collect();
+    let entered = entered.map_err(Fault::Border)?;
+    Ok(instance.component.set(references, &entered)?)
+}
+
+/// For functions of a type that no variable has: fine for none, an error for any.
+pub(crate) fn no_variable_of_type(name: &str, count: usize) -> Result<(), Fault> {
+    if count == 0 {
+        return Ok(());
+    }
+    Err(Fault::border(format!(
+        "no variable is of type {name}; the types used are real (Float64), integer (Int64) and Boolean"
+    )))
+}
+
+fn check(
+    component: &Component,
+    references: &[u32],
+    kind: ValueKind,
+    count: usize,
+) -> Result<(), Fault> {
+    let table = component.variables();
+    let mut expected = 0;
+    for reference in references {
+        let Some(row) = table.by_reference(*reference) else {
+            return Err(Fault::border(format!(
+                "value reference {reference} is unknown; modelDescription.xml has 0 to {}",
+                table.rows().len() - 1
+            )));
+        };
+        if row.kind != kind {
+            return Err(Fault::border(format!(
+                "variable {} is {}; this call is for {} variables",
+                row.name,
+                kind_name(row.kind),
+                kind_name(kind)
+            )));
+        }
+        expected += row.len();
+    }
+    if expected != count {
+        return Err(Fault::border(format!(
+            "found room for {count} values, these variables have {expected}"
+        )));
+    }
+    Ok(())
+}
+
+fn kind_name(kind: ValueKind) -> &'static str {
+    match kind {
+        ValueKind::Real => "real",
+        ValueKind::Integer => "integer",
+        ValueKind::Boolean => "Boolean",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_do_not_fit_are_refused() {
+        assert_eq!(<i32 as Value>::leave(-3.0), Ok(-3));
+        assert!(<i32 as Value>::leave(3e9).is_err());
+        assert_eq!(<i64 as Value>::leave(3e9), Ok(3_000_000_000));
+        assert_eq!(<i64 as Value>::enter(7), Ok(7.0));
+        assert!(<i64 as Value>::enter(i64::MAX).is_err());
+        assert!(Flag::from_number(2).is_err());
+        assert_eq!(Flag::from_number(1).map(Flag::number), Ok(1));
+    }
+}

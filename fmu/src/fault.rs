@@ -1,0 +1,55 @@
+//! Why a call did not do what it was asked, and the numbers that say so in each interface.
+
+use std::fmt;
+
+use sandgate::component::Error;
+
+/// A call that was refused or failed.
+#[derive(Debug)]
+pub(crate) enum Fault {
+    /// The component said no.
+    Component(Error),
+    /// The arguments or the instance do not allow the call at all.
+    Border(String),
+    /// An earlier call broke down in the middle, or this one did: the instance must be reset or given a state.
+    Broken(String),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Component(error) => error.fmt(f),
+            Self::Border(text) | Self::Broken(text) => f.write_str(text),
+        }
+    }
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self::Component(error)
+    }
+}
+
+impl Fault {
+    pub(crate) fn border(text: impl Into<String>) -> Self {
+        Self::Border(text.into())
+    }
+}
+
+/// Status of FMI 2 and FMI 3: the numbers are the same. Warning, Discard and Fatal are never given: importers take the
+/// first two for failures or repeat the step for ever, and no memory is corrupt after a caught panic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub(crate) enum Status {
+    Ok = 0,
+    Error = 3,
+}
+
+impl From<Result<(), Fault>> for Status {
+    fn from(result: Result<(), Fault>) -> Self {
+        match result {
+            Ok(()) => Self::Ok,
+            Err(_) => Self::Error,
+        }
+    }
+}

@@ -1,0 +1,411 @@
+//! FMI 2.0 for co-simulation: all 34 functions of the common and co-simulation part.
+//!
+//! Names and order of arguments are the standard's (fmi2Functions.h); a test compiles them against that header.
+
+use std::ffi::c_char;
+
+use sandgate::component::{Error, Mode};
+use sandgate::fmi::FmiVersion;
+
+use crate::access::{Flag, get, no_variable_of_type, set};
+use crate::fault::{Fault, Status};
+use crate::guard::{Callbacks2, Handle, In, Need, Out, StateHandle, StateSlot, Text};
+use crate::instance::{Experiment, Instance, create};
+use crate::log::{Log, Sink, text};
+
+const CO_SIMULATION: i32 = 1;
+/// fmi2StatusKind.
+const DO_STEP_STATUS: i32 = 0;
+const LAST_SUCCESSFUL_TIME: i32 = 2;
+const TERMINATED: i32 = 3;
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetVersion() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SetDebugLogging(
+    c: Handle,
+    on: i32,
+    n: usize,
+    categories: In<Text>,
+) -> Status {
+    c.call("fmi2SetDebugLogging", Need::Any, |i| {
+        i.switch_log(on != 0, categories.slice(n, "categories")?)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2Instantiate(
+    name: Text,
+    kind: i32,
+    guid: Text,
+    _resources: Text,
+    functions: In<Callbacks2>,
+    _visible: i32,
+    logging: i32,
+) -> Handle {
+    let named = name.get("instanceName").unwrap_or("?");
+    let sink = match functions.copied() {
+        Some(callbacks) => Sink::Fmi2(callbacks, text(named)),
+        None => Sink::Nobody,
+    };
+    create("fmi2Instantiate", Log::new(sink, logging != 0), |log| {
+        if name.get("instanceName")?.is_empty() {
+            return Err(Fault::border("instanceName is empty, expected a name"));
+        }
+        if kind != CO_SIMULATION {
+            return Err(Fault::border(format!(
+                "fmuType: found {kind}, allowed 1 (fmi2CoSimulation)"
+            )));
+        }
+        Instance::of_fmu(FmiVersion::V2, guid.get("fmuGUID")?, log)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2FreeInstance(c: Handle) {
+    c.free();
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SetupExperiment(
+    c: Handle,
+    _tolerance_defined: i32,
+    _tolerance: f64,
+    start: f64,
+    stop_defined: i32,
+    stop: f64,
+) -> Status {
+    c.call("fmi2SetupExperiment", Need::Sound, |i| {
+        i.expect_mode("fmi2SetupExperiment", Mode::Instantiated)?;
+        let stop = (stop_defined != 0).then_some(stop);
+        if !start.is_finite() || stop.is_some_and(|stop| !stop.is_finite() || stop < start) {
+            return Err(Fault::border(format!(
+                "found start {start} and stop {stop:?}, allowed finite times with stop not before start"
+            )));
+        }
+        i.experiment = Experiment { start, stop };
+        Ok(())
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2EnterInitializationMode(c: Handle) -> Status {
+    c.call("fmi2EnterInitializationMode", Need::Sound, |i| {
+        let Experiment { start, stop } = i.experiment;
+        Ok(i.component.enter_initialization(start, stop)?)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2ExitInitializationMode(c: Handle) -> Status {
+    c.call("fmi2ExitInitializationMode", Need::Sound, |i| {
+        i.exit_initialization()
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2Terminate(c: Handle) -> Status {
+    c.call("fmi2Terminate", Need::Sound, |i| {
+        Ok(i.component.terminate()?)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2Reset(c: Handle) -> Status {
+    c.call("fmi2Reset", Need::Any, Instance::reset).into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetReal(
+    c: Handle,
+    vr: In<u32>,
+    n: usize,
+    mut value: Out<f64>,
+) -> Status {
+    c.call("fmi2GetReal", Need::Sound, |i| {
+        get(i, vr.slice(n, "vr")?, &mut value, n, |v: f64| v)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetInteger(
+    c: Handle,
+    vr: In<u32>,
+    n: usize,
+    mut value: Out<i32>,
+) -> Status {
+    c.call("fmi2GetInteger", Need::Sound, |i| {
+        get(i, vr.slice(n, "vr")?, &mut value, n, |v: i32| v)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetBoolean(
+    c: Handle,
+    vr: In<u32>,
+    n: usize,
+    mut value: Out<i32>,
+) -> Status {
+    c.call("fmi2GetBoolean", Need::Sound, |i| {
+        get(i, vr.slice(n, "vr")?, &mut value, n, |v: Flag| {
+            i32::from(v.number())
+        })
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetString(
+    c: Handle,
+    _vr: In<u32>,
+    n: usize,
+    _value: Out<*const c_char>,
+) -> Status {
+    c.call("fmi2GetString", Need::Sound, |_| {
+        no_variable_of_type("String", n)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SetReal(c: Handle, vr: In<u32>, n: usize, value: In<f64>) -> Status {
+    c.call("fmi2SetReal", Need::Sound, |i| {
+        set::<f64, _>(i, vr.slice(n, "vr")?, value.slice(n, "value")?, Ok)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SetInteger(
+    c: Handle,
+    vr: In<u32>,
+    n: usize,
+    value: In<i32>,
+) -> Status {
+    c.call("fmi2SetInteger", Need::Sound, |i| {
+        set::<i32, _>(i, vr.slice(n, "vr")?, value.slice(n, "value")?, Ok)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SetBoolean(
+    c: Handle,
+    vr: In<u32>,
+    n: usize,
+    value: In<i32>,
+) -> Status {
+    c.call("fmi2SetBoolean", Need::Sound, |i| {
+        let (vr, value) = (vr.slice(n, "vr")?, value.slice(n, "value")?);
+        set(i, vr, value, |v| Flag::from_number(v.into()))
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SetString(
+    c: Handle,
+    _vr: In<u32>,
+    n: usize,
+    _value: In<Text>,
+) -> Status {
+    c.call("fmi2SetString", Need::Sound, |_| {
+        no_variable_of_type("String", n)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetFMUstate(c: Handle, mut state: StateSlot) -> Status {
+    c.call("fmi2GetFMUstate", Need::Sound, |i| state.put(i.save()?))
+        .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SetFMUstate(c: Handle, state: StateHandle) -> Status {
+    c.call("fmi2SetFMUstate", Need::Any, |i| {
+        let state = state.get()?;
+        i.restore(&state.bytes, state.experiment)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2FreeFMUstate(c: Handle, mut state: StateSlot) -> Status {
+    c.call("fmi2FreeFMUstate", Need::Any, |_| {
+        state.free();
+        Ok(())
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SerializedFMUstateSize(
+    c: Handle,
+    state: StateHandle,
+    mut size: Out<usize>,
+) -> Status {
+    c.call("fmi2SerializedFMUstateSize", Need::Any, |_| {
+        size.write(&[state.get()?.bytes.len()], "size")
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SerializeFMUstate(
+    c: Handle,
+    state: StateHandle,
+    mut bytes: Out<u8>,
+    size: usize,
+) -> Status {
+    c.call("fmi2SerializeFMUstate", Need::Any, |_| {
+        bytes.write(state.get()?.sized(size)?, "serializedState")
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2DeSerializeFMUstate(
+    c: Handle,
+    bytes: In<u8>,
+    size: usize,
+    mut state: StateSlot,
+) -> Status {
+    c.call("fmi2DeSerializeFMUstate", Need::Any, |i| {
+        state.put(i.deserialize(bytes.slice(size, "serializedState")?)?)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetDirectionalDerivative(
+    c: Handle,
+    _unknown: In<u32>,
+    _n_unknown: usize,
+    _known: In<u32>,
+    _n_known: usize,
+    _dv_known: In<f64>,
+    _dv_unknown: Out<f64>,
+) -> Status {
+    c.not_provided(
+        "fmi2GetDirectionalDerivative",
+        "providesDirectionalDerivative",
+    )
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2SetRealInputDerivatives(
+    c: Handle,
+    _vr: In<u32>,
+    _n: usize,
+    _order: In<i32>,
+    _value: In<f64>,
+) -> Status {
+    c.not_provided("fmi2SetRealInputDerivatives", "canInterpolateInputs")
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetRealOutputDerivatives(
+    c: Handle,
+    _vr: In<u32>,
+    _n: usize,
+    _order: In<i32>,
+    _value: Out<f64>,
+) -> Status {
+    c.not_provided("fmi2GetRealOutputDerivatives", "maxOutputDerivativeOrder")
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2DoStep(c: Handle, t: f64, h: f64, _no_set_state: i32) -> Status {
+    c.call("fmi2DoStep", Need::Sound, |i| i.step(t, h).map(drop))
+        .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2CancelStep(c: Handle) -> Status {
+    c.not_provided("fmi2CancelStep", "canRunAsynchronuously")
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetStatus(c: Handle, kind: i32, mut value: Out<i32>) -> Status {
+    c.call("fmi2GetStatus", Need::Any, |i| {
+        expect_kind(kind, DO_STEP_STATUS, "0 (fmi2DoStepStatus)")?;
+        value.write(&[i.last_step as i32], "value")
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetRealStatus(c: Handle, kind: i32, mut value: Out<f64>) -> Status {
+    c.call("fmi2GetRealStatus", Need::Sound, |i| {
+        expect_kind(kind, LAST_SUCCESSFUL_TIME, "2 (fmi2LastSuccessfulTime)")?;
+        value.write(&[i.component.time()], "value")
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetIntegerStatus(c: Handle, _kind: i32, _value: Out<i32>) -> Status {
+    c.call("fmi2GetIntegerStatus", Need::Any, |_| {
+        Err(Fault::border("the standard has no integer status"))
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetBooleanStatus(c: Handle, kind: i32, mut value: Out<i32>) -> Status {
+    c.call("fmi2GetBooleanStatus", Need::Any, |_| {
+        expect_kind(kind, TERMINATED, "3 (fmi2Terminated)")?;
+        // The component never asks to end the simulation.
+        value.write(&[0], "value")
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi2GetStringStatus(
+    c: Handle,
+    _kind: i32,
+    _value: Out<*const c_char>,
+) -> Status {
+    c.not_provided("fmi2GetStringStatus", "canRunAsynchronuously")
+}
+
+fn expect_kind(found: i32, allowed: i32, name: &str) -> Result<(), Fault> {
+    if found == allowed {
+        return Ok(());
+    }
+    Err(Fault::border(format!(
+        "status kind: found {found}, allowed {name}"
+    )))
+}
+
+impl Instance {
+    /// Calls that FMI has in one mode only and the component does not know.
+    fn expect_mode(&self, call: &'static str, wanted: Mode) -> Result<(), Fault> {
+        let mode = self.component.mode();
+        if mode == wanted {
+            return Ok(());
+        }
+        Err(Fault::Component(Error::NotAllowedNow {
+            call,
+            mode,
+            allowed: format!("{wanted:?}"),
+        }))
+    }
+}

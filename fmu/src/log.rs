@@ -1,0 +1,99 @@
+//! The importer's logger: which categories are on, and text made ready for it.
+
+use std::ffi::{CStr, CString};
+
+use sandgate::fmi::LOG_CATEGORIES;
+
+use crate::fault::{Fault, Status};
+use crate::guard::{Callbacks2, Environment, Logger3};
+
+/// Place in [`LOG_CATEGORIES`].
+#[derive(Clone, Copy)]
+pub(crate) enum Category {
+    /// Refused and failed calls.
+    Error = 0,
+    /// What happens.
+    Event = 1,
+}
+
+/// Whom to tell.
+#[derive(Clone)]
+pub(crate) enum Sink {
+    /// The plain C interface: nobody; the text of the last error can be asked for.
+    Nobody,
+    /// FMI 2 with the instance's name.
+    Fmi2(Callbacks2, CString),
+    /// FMI 3.
+    Fmi3(Logger3, Environment),
+}
+
+/// The logger of one instance.
+#[derive(Clone)]
+pub(crate) struct Log {
+    sink: Sink,
+    on: [bool; LOG_CATEGORIES.len()],
+}
+
+impl Log {
+    /// All categories, or none.
+    pub(crate) fn new(sink: Sink, on: bool) -> Self {
+        Self {
+            sink,
+            on: [on; LOG_CATEGORIES.len()],
+        }
+    }
+
+    /// Switches categories; no names mean all of them. Unknown names are refused and nothing changes.
+    pub(crate) fn switch(&mut self, on: bool, names: &[&str]) -> Result<(), Fault> {
+        let mut wanted = self.on;
+        if names.is_empty() {
+            wanted = [on; LOG_CATEGORIES.len()];
+        }
+        for name in names {
+            let known = LOG_CATEGORIES.iter().position(|(known, _)| known == name);
+            let Some(place) = known else {
+                let all: Vec<_> = LOG_CATEGORIES.iter().map(|(name, _)| *name).collect();
+                return Err(Fault::border(format!(
+                    "log category: found {name}, allowed {}",
+                    all.join(", ")
+                )));
+            };
+            wanted[place] = on;
+        }
+        self.on = wanted;
+        Ok(())
+    }
+
+    /// Whether a message of this category would be passed on.
+    pub(crate) fn wants(&self, category: Category) -> bool {
+        self.on[category as usize] && !matches!(self.sink, Sink::Nobody)
+    }
+
+    /// Passes a message on, if its category is on.
+    pub(crate) fn say(&self, category: Category, status: Status, message: &str) {
+        if !self.wants(category) {
+            return;
+        }
+        let name = text(LOG_CATEGORIES[category as usize].0);
+        match &self.sink {
+            Sink::Nobody => {}
+            // FMI 2 takes the message for a format: without further arguments, only `%` has to be doubled.
+            Sink::Fmi2(callbacks, instance) => callbacks.logger.call(
+                callbacks.environment,
+                instance,
+                status,
+                &name,
+                &text(&message.replace('%', "%%")),
+            ),
+            Sink::Fmi3(logger, environment) => {
+                logger.call(*environment, status, &name, &text(message));
+            }
+        }
+    }
+}
+
+/// Text for C; a zero byte inside becomes a visible sign.
+pub(crate) fn text(text: &str) -> CString {
+    CString::new(text.replace('\0', "\u{2400}"))
+        .unwrap_or_else(|_| CStr::to_owned(c"(text with a zero byte)"))
+}
