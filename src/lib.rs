@@ -1,12 +1,15 @@
 //! Sandgate: granular flow as a co-simulation component.
 #![forbid(unsafe_code)]
 
+pub mod boundary;
 #[cfg(feature = "bus")]
 pub mod bus;
 pub mod component;
 pub mod fmi;
 pub mod gauge;
+pub mod kernel;
 pub mod material;
+pub mod math;
 #[cfg(feature = "record")]
 pub mod record;
 pub mod scene;

@@ -4,9 +4,8 @@
 //! variable table and no snapshot header; those stand in the modules beside it. `build` joins scene, state,
 //! solver and gauges.
 
-use super::{Error, MassLedger, ParticleView, Statistics};
+use super::{MassLedger, ParticleView, Statistics};
 use crate::gauge::Reading;
-use crate::scene::Scene;
 use crate::solver::StepBound;
 
 /// An input over one communication step: `value + slope (t - t0)`, t0 being the start of the step.
@@ -132,11 +131,4 @@ pub(crate) trait Engine: Send {
     fn set_threads(&mut self, threads: usize);
 }
 
-/// Builds particles, walls, devices and gauges of a scene.
-///
-/// # Errors
-/// [`Error::Setup`] if the scene cannot be built.
-pub(crate) fn build(scene: &Scene) -> Result<Box<dyn Engine>, Error> {
-    let _ = scene;
-    Err(Error::Setup("not built yet".to_owned()))
-}
+pub(crate) use super::simulation::build;

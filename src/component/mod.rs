@@ -16,6 +16,7 @@ mod lifecycle;
 mod outputs;
 mod reports;
 mod sampling;
+mod simulation;
 mod snapshot;
 mod status;
 mod variables;

@@ -9,7 +9,6 @@
 mod crossing;
 mod depth;
 mod front;
-mod kernel;
 mod pressure;
 mod profile;
 mod view;

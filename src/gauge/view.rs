@@ -1,6 +1,6 @@
 //! What gauges see: particles, wall particles and the box they are in. Borrowed for one sampling.
 
-use super::kernel::WendlandC2;
+use crate::kernel::WendlandC2;
 use crate::state::CellGrid;
 
 /// Particles and walls at one time. All slices have one entry a particle.

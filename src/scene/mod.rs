@@ -4,11 +4,13 @@
 //! `build` turns a [`Scene`] into particles, walls, devices and gauges. No strings with meaning, no missing
 //! values and no units exist below this module.
 
+mod build;
 mod error;
 mod lift;
 mod raw;
 mod types;
 
+pub use build::{build, narrow};
 pub use error::{SceneError, SceneErrors};
 pub use types::*;
 

@@ -1,4 +1,8 @@
-//! Regions to fill with material: inside tests and bounds. Points are `[x, y, z]`, z = 0 in planar scenes.
+//! Rank 1: regions to fill with material: inside tests, bounds, lattices. Points are `[x, y, z]`, z = 0 in planar scenes.
+
+mod fill;
+
+pub use fill::{Lattice, lattice};
 
 /// A region of space.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,4 +28,85 @@ pub enum Shape {
         /// Height along z [m].
         height: f64,
     },
+}
+
+impl Shape {
+    /// Lower and upper corner of its bounding box [m].
+    #[must_use]
+    pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        match self {
+            Shape::Box { lower, upper } => (*lower, *upper),
+            Shape::Polygon { points } => {
+                let mut low = [f64::INFINITY, f64::INFINITY, 0.0];
+                let mut high = [f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0];
+                for p in points {
+                    for k in 0..2 {
+                        low[k] = low[k].min(p[k]);
+                        high[k] = high[k].max(p[k]);
+                    }
+                }
+                (low, high)
+            }
+            Shape::Column {
+                base,
+                radius,
+                height,
+            } => (
+                [base[0] - radius, base[1] - radius, base[2]],
+                [base[0] + radius, base[1] + radius, base[2] + height],
+            ),
+        }
+    }
+
+    /// Whether a point lies inside (planar scenes: z is ignored for polygons and boxes without depth).
+    #[must_use]
+    pub fn contains(&self, x: &[f64; 3]) -> bool {
+        match self {
+            Shape::Box { lower, upper } => (0..3)
+                .all(|k| (x[k] >= lower[k] && x[k] < upper[k]) || (k == 2 && lower[2] == upper[2])),
+            Shape::Polygon { points } => {
+                // Even-odd rule.
+                let n = points.len();
+                (0..n).fold(false, |inside, i| {
+                    let (a, b) = (points[i], points[(i + 1) % n]);
+                    let spans = (a[1] > x[1]) != (b[1] > x[1]);
+                    let crosses =
+                        spans && x[0] < (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]) + a[0];
+                    inside != crosses
+                })
+            }
+            Shape::Column {
+                base,
+                radius,
+                height,
+            } => {
+                let (dx, dy) = (x[0] - base[0], x[1] - base[1]);
+                dx * dx + dy * dy <= radius * radius && x[2] >= base[2] && x[2] < base[2] + height
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_triangle_contains_its_centre_and_not_its_corner_box() {
+        let t = Shape::Polygon {
+            points: vec![[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]],
+        };
+        assert!(t.contains(&[0.6, 0.6, 0.0]));
+        assert!(!t.contains(&[1.5, 1.5, 0.0]));
+    }
+
+    #[test]
+    fn a_box_is_filled_to_its_volume() {
+        let shape = Shape::Box {
+            lower: [0.0; 3],
+            upper: [0.2, 0.1, 0.0],
+        };
+        let l = lattice(&shape, None, 0.0049, 2);
+        assert!((l.cell_volume * l.points.len() as f64 - 0.02).abs() < 1e-15);
+    }
 }

@@ -1,6 +1,38 @@
-//! The solver.
+//! Rank 4: the solver. [`Solver::step`] is the algorithm of docs/theory.md, "Algorithm", one line a stage.
+//!
+//! It knows particles, walls and devices; no scenes, files or clocks. The same bits for any number of threads: every
+//! row is gathered by itself, and sums run in a fixed order.
+
+mod constitutive;
+mod devices;
+mod error;
+mod grid;
+mod kinematics;
+mod lists;
 mod numerics;
+mod pair;
+mod pressure;
+mod timestep;
+mod viscous;
+
+pub use devices::{Sink, Source};
+pub use error::SolverError;
+pub use grid::Periodic;
 pub use numerics::{Numerics, Scheme};
+
+use crate::boundary::{Plate, WallPoints};
+use crate::kernel::WendlandC2;
+use crate::material::Material;
+use crate::math::{Vector, Workers, norm};
+use crate::state::State;
+
+use kinematics::Kinematics;
+use lists::Lists;
+use pressure::Prediction;
+use viscous::Viscous;
+
+/// Skin of the neighbour lists over h [1].
+const SKIN: f64 = 0.3;
 
 /// What bounds an internal step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -13,4 +45,368 @@ pub enum StepBound {
     Viscous,
     /// The end of the communication step.
     Communication,
+}
+
+impl StepBound {
+    /// Name for people.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            StepBound::Acoustic => "acoustic",
+            StepBound::Motion => "motion",
+            StepBound::Viscous => "viscous",
+            StepBound::Communication => "communication",
+        }
+    }
+}
+
+/// What a solver is made for: everything about a scene that does not change while it runs.
+#[derive(Clone, Debug)]
+pub struct Plan<const D: usize> {
+    /// Numerical choices.
+    pub numerics: Numerics,
+    /// Gravity [m/s^2].
+    pub gravity: Vector<D>,
+    /// Out-of-plane width of planar scenes [m]; 1 in space.
+    pub width: f64,
+    /// Lower corner of the domain [m].
+    pub lower: Vector<D>,
+    /// Upper corner of the domain [m].
+    pub upper: Vector<D>,
+    /// Periodic axes.
+    pub periodic: Periodic<D>,
+    /// Materials by phase.
+    pub materials: Vec<Material>,
+    /// Points of the fixed walls; groups hold walls, then gates.
+    pub walls: WallPoints<D>,
+    /// Gates.
+    pub plates: Vec<Plate<D>>,
+    /// Inflows.
+    pub sources: Vec<Source<D>>,
+    /// Outflows.
+    pub sinks: Vec<Sink<D>>,
+}
+
+/// Inputs over one internal step.
+#[derive(Clone, Copy, Debug)]
+pub struct StepInputs<'a> {
+    /// Opening wanted of each gate, 0 to 1.
+    pub openings: &'a [f64],
+    /// Rate of each inflow [kg/s].
+    pub rates: &'a [f64],
+}
+
+/// What one internal step did.
+#[derive(Clone, Copy, Debug)]
+pub struct SubStep {
+    /// Its length [s].
+    pub dt: f64,
+    /// What bound it.
+    pub bound: StepBound,
+    /// Iterations of the viscous solve.
+    pub iterations: u32,
+}
+
+/// Steps a [`State`]. Holds the plan, threads and derived data; nothing that a later bit depends on.
+#[derive(Debug)]
+pub struct Solver<const D: usize> {
+    numerics: Numerics,
+    gravity: Vector<D>,
+    gravity_norm: f64,
+    width: f64,
+    lower: Vector<D>,
+    upper: Vector<D>,
+    periodic: Periodic<D>,
+    materials: Vec<Material>,
+    kernel: WendlandC2<D>,
+    walls: WallPoints<D>,
+    /// Number of wall groups before the gates'.
+    fixed_groups: usize,
+    plates: Vec<Plate<D>>,
+    sources: Vec<Source<D>>,
+    sinks: Vec<Sink<D>>,
+    workers: Workers,
+    lists: Lists<D>,
+    kinematics: Vec<Kinematics>,
+    volume: Vec<f64>,
+    pressure: Vec<f64>,
+    viscosity: Vec<f64>,
+    pair_viscosity: Vec<f64>,
+    inertial_number: Vec<f64>,
+    prediction: Vec<Prediction<D>>,
+    viscous: Viscous<D>,
+    /// Positions before the last move, for section crossings.
+    before: Vec<Vector<D>>,
+}
+
+impl<const D: usize> Solver<D> {
+    /// A solver for a plan, on `threads` threads (0: all cores).
+    #[must_use]
+    pub fn new(plan: Plan<D>, threads: usize) -> Self {
+        let Plan {
+            numerics,
+            gravity,
+            width,
+            lower,
+            upper,
+            periodic,
+            materials,
+            mut walls,
+            mut plates,
+            sources,
+            sinks,
+        } = plan;
+        let h = numerics.spacing * numerics.smoothing_ratio;
+        let kernel = WendlandC2::new(h);
+        let fixed_groups = walls.groups.len() - plates.len();
+        for plate in &mut plates {
+            plate.append(&mut walls);
+        }
+        Self {
+            lists: Lists::new(kernel.support(), SKIN * h),
+            gravity_norm: norm(&gravity),
+            numerics,
+            gravity,
+            width,
+            lower,
+            upper,
+            periodic,
+            materials,
+            kernel,
+            walls,
+            fixed_groups,
+            plates,
+            sources,
+            sinks,
+            workers: Workers::new(threads),
+            kinematics: Vec::new(),
+            volume: Vec::new(),
+            pressure: Vec::new(),
+            viscosity: Vec::new(),
+            pair_viscosity: Vec::new(),
+            inertial_number: Vec::new(),
+            prediction: Vec::new(),
+            viscous: Viscous::default(),
+            before: Vec::new(),
+        }
+    }
+
+    /// Uses another number of threads (0: all cores); results do not change.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.workers = Workers::new(threads);
+    }
+
+    /// Sorts a fresh state's particles and derives everything else from it.
+    pub fn start(&mut self, state: &mut State<D>) {
+        self.renew_lists(state);
+        self.derive(state);
+    }
+
+    /// Derives lists, walls, pressures and viscosities of a restored state, with the bits they had.
+    pub fn resume(&mut self, state: &State<D>) {
+        // Lists were built with the plates where they were then.
+        for (plate, gate) in self.plates.iter().zip(&state.gates) {
+            plate.place(&mut self.walls, gate.listed_opening, 0.0);
+        }
+        self.lists
+            .build(&state.grains, &self.walls, &self.periodic, &self.workers);
+        for (plate, gate) in self.plates.iter().zip(&state.gates) {
+            plate.place(&mut self.walls, gate.opening, gate.rate);
+        }
+        self.derive(state);
+    }
+
+    /// One internal step of at most the stable length, that brings `state` towards `end` in equal steps.
+    ///
+    /// `on_move` sees positions before and after, and masses, before periodic sides and sinks act.
+    ///
+    /// # Errors
+    /// [`SolverError`]; the state is then half-stepped and must be discarded.
+    pub fn step(
+        &mut self,
+        state: &mut State<D>,
+        end: f64,
+        inputs: &StepInputs<'_>,
+        on_move: &mut dyn FnMut(&[Vector<D>], &[Vector<D>], &[f64]),
+    ) -> Result<SubStep, SolverError> {
+        let (dt, bound) = self.choose_step(state, end)?;
+        self.sweep_pressure(state, dt);
+        let iterations = match self.numerics.scheme {
+            Scheme::Implicit => self.solve_viscous(state, dt)?,
+            Scheme::Explicit => {
+                self.explicit_viscous(state, dt);
+                0
+            }
+        };
+        self.add_reactions(state, dt);
+        self.move_grains(state, dt)?;
+        on_move(&self.before, &state.grains.position, &state.grains.mass);
+        self.move_gates(state, inputs.openings, dt);
+        self.drain(state);
+        self.keep_inside(state)?;
+        self.sweep_kinematics_in_valid_lists(state, false);
+        self.advance_density(state, dt)?;
+        let came = self.feed(state, inputs.rates, dt);
+        if came {
+            self.sweep_kinematics_in_valid_lists(state, true);
+        }
+        self.respond(state);
+        state.time += dt;
+        state.steps += 1;
+        state.iterations += u64::from(iterations);
+        state.step_size = dt;
+        Ok(SubStep {
+            dt,
+            bound,
+            iterations,
+        })
+    }
+
+    /// The stable step, shortened so that equal steps end at `end`.
+    fn choose_step(&self, state: &State<D>, end: f64) -> Result<(f64, StepBound), SolverError> {
+        let (stable, bound) = self.step_bound(state.time, &state.grains.density)?;
+        let left = end - state.time;
+        let count = (left / stable - 1e-9).ceil().max(1.0);
+        if count <= 1.0 {
+            Ok((
+                left,
+                if left < 0.999 * stable {
+                    StepBound::Communication
+                } else {
+                    bound
+                },
+            ))
+        } else {
+            Ok((left / count, bound))
+        }
+    }
+
+    /// v and x to the end of the step (symplectic Euler), and the density's diffusion before lists may reorder rows.
+    fn move_grains(&mut self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
+        let grains = &mut state.grains;
+        self.before.clone_from(&grains.position);
+        for i in 0..grains.len() {
+            let v = self.viscous.velocity[i];
+            for k in 0..D {
+                grains.viscous_acceleration[i][k] = (v[k] - self.prediction[i].velocity[k]) / dt;
+                grains.position[i][k] += dt * v[k];
+            }
+            grains.velocity[i] = v;
+            grains.density[i] += dt * self.prediction[i].diffusion;
+            if !v.iter().all(|c| c.is_finite()) {
+                return Err(self.not_finite(state, "velocity", |n| n != i));
+            }
+        }
+        Ok(())
+    }
+
+    /// Periodic sides, and the check that nothing is lost.
+    fn keep_inside(&self, state: &mut State<D>) -> Result<(), SolverError> {
+        let grains = &mut state.grains;
+        for i in 0..grains.len() {
+            self.periodic.wrap(&mut grains.position[i]);
+            let x = &grains.position[i];
+            let inside = (0..D).all(|k| {
+                self.periodic.length[k] > 0.0 || (x[k] >= self.lower[k] && x[k] <= self.upper[k])
+            });
+            if !inside && !grains.drained[i] {
+                return Err(SolverError::Lost {
+                    particle: grains.id[i],
+                    time: state.time,
+                    position: three(x),
+                    velocity: three(&grains.velocity[i]),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn sweep_kinematics_in_valid_lists(&mut self, state: &mut State<D>, renew: bool) {
+        let travel = self
+            .plates
+            .iter()
+            .zip(&state.gates)
+            .map(|(p, g)| (g.opening - g.listed_opening).abs() * p.length)
+            .fold(0.0, f64::max);
+        if renew
+            || self.lists.outdated(
+                &state.grains,
+                &self.periodic,
+                travel,
+                !self.walls.is_empty(),
+            )
+        {
+            self.renew_lists(state);
+        }
+        self.sweep_kinematics(state);
+    }
+
+    fn renew_lists(&mut self, state: &mut State<D>) {
+        self.lists.sort(&mut state.grains, &self.periodic);
+        for gate in &mut state.gates {
+            gate.listed_opening = gate.opening;
+        }
+        for (plate, gate) in self.plates.iter().zip(&state.gates) {
+            plate.place(&mut self.walls, gate.opening, gate.rate);
+        }
+        self.lists
+            .build(&state.grains, &self.walls, &self.periodic, &self.workers);
+    }
+
+    fn derive(&mut self, state: &State<D>) {
+        self.sweep_kinematics(state);
+        self.respond(state);
+    }
+
+    /// The first particle for which `fine` is false, as an error.
+    fn not_finite(
+        &self,
+        state: &State<D>,
+        quantity: &'static str,
+        fine: impl Fn(usize) -> bool,
+    ) -> SolverError {
+        let i = (0..state.grains.len()).find(|&i| !fine(i)).unwrap_or(0);
+        SolverError::NotFinite {
+            particle: state.grains.id.get(i).copied().unwrap_or(0),
+            time: state.time,
+            quantity,
+            position: state.grains.position.get(i).map_or([0.0; 3], three),
+        }
+    }
+
+    /// Pressure of each particle [Pa].
+    #[must_use]
+    pub fn pressure(&self) -> &[f64] {
+        &self.pressure
+    }
+
+    /// Inertial number of each particle [1].
+    #[must_use]
+    pub fn inertial_number(&self) -> &[f64] {
+        &self.inertial_number
+    }
+
+    /// Wall and gate points where they are now.
+    #[must_use]
+    pub fn walls(&self) -> &WallPoints<D> {
+        &self.walls
+    }
+
+    /// The kernel.
+    #[must_use]
+    pub fn kernel(&self) -> &WendlandC2<D> {
+        &self.kernel
+    }
+
+    /// Threads at work.
+    #[must_use]
+    pub fn workers(&self) -> &Workers {
+        &self.workers
+    }
+}
+
+/// A point as three numbers, for messages and pictures.
+#[must_use]
+pub fn three<const D: usize>(x: &Vector<D>) -> [f64; 3] {
+    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
 }

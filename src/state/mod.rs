@@ -1,5 +1,69 @@
-//! What is where: particles and the cell grid over points. Knows nothing of how it is advanced.
+//! Rank 2: everything that can change a later bit (docs/theory.md, "State"), and nothing else.
+//!
+//! Lists, pressures, velocity gradients and wall points are derived: they are rebuilt from this, with the same bits.
 
 mod cells;
+mod grains;
+mod random;
 
 pub use cells::CellGrid;
+pub use grains::{Grains, flat};
+pub use random::Random;
+
+use serde::{Deserialize, Serialize};
+
+use crate::math::Vector;
+
+/// The running state of a scene in D dimensions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State<const D: usize> {
+    /// Simulated time [s].
+    pub time: f64,
+    /// The particles.
+    pub grains: Grains<D>,
+    /// One per gate of the scene.
+    pub gates: Vec<GateState>,
+    /// One per inflow of the scene.
+    pub inflows: Vec<InflowState>,
+    /// Mass each outflow has taken [kg].
+    pub drained: Vec<f64>,
+    /// Impulse on each wall, then each gate, over the last advance [N s].
+    #[serde(with = "flat")]
+    pub impulse: Vec<Vector<D>>,
+    /// Mass at the start [kg].
+    pub initial_mass: f64,
+    /// Next particle number.
+    pub next_id: u64,
+    /// Internal steps done.
+    pub steps: u64,
+    /// Iterations of viscous solves done.
+    pub iterations: u64,
+    /// Last internal step [s].
+    pub step_size: f64,
+    /// Generator of inflow jitter.
+    pub random: Random,
+}
+
+/// Where a gate is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GateState {
+    /// Actual opening, 0 to 1.
+    pub opening: f64,
+    /// Rate of opening over the last step [1/s].
+    pub rate: f64,
+    /// Whether material stopped it in the last step.
+    pub blocked: bool,
+    /// Opening when the neighbour lists were built.
+    pub listed_opening: f64,
+}
+
+/// What an inflow has let in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct InflowState {
+    /// Requested mass that has not made a row yet [kg].
+    pub pending: f64,
+    /// Mass let in since the start [kg].
+    pub admitted: f64,
+    /// Whether material stood in the way of the last row.
+    pub blocked: bool,
+}

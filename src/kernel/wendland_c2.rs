@@ -59,3 +59,34 @@ impl<const D: usize> WendlandC2<D> {
         -self.slope * t * t * t
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integral_is_one_in_plane_and_space() {
+        let (k2, k3) = (WendlandC2::<2>::new(0.7), WendlandC2::<3>::new(0.7));
+        let n = 20_000;
+        let dr = 1.4 / f64::from(n);
+        let (mut s2, mut s3) = (0.0, 0.0);
+        for i in 0..n {
+            let r = (f64::from(i) + 0.5) * dr;
+            s2 += k2.w(r) * 2.0 * PI * r * dr;
+            s3 += k3.w(r) * 4.0 * PI * r * r * dr;
+        }
+        assert!(
+            (s2 - 1.0).abs() < 1e-8 && (s3 - 1.0).abs() < 1e-8,
+            "{s2} {s3}"
+        );
+    }
+
+    #[test]
+    fn slope_is_the_derivative() {
+        let k = WendlandC2::<2>::new(1.3);
+        for r in [0.1, 0.9, 1.7, 2.5] {
+            let d = (k.w(r + 1e-6) - k.w(r - 1e-6)) / 2e-6;
+            assert!((k.f(r) * r - d).abs() < 1e-8);
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Rank 3: walls as rows of dummy particles that have a velocity but no unknowns of their own.
+//!
+//! A wall point counts twice in every pair sum and takes the volume, pressure and stress of the particle that sees it
+//! (docs/theory.md, "Walls"): no distance to the wall is needed.
+
+mod plate;
+mod points;
+
+pub use plate::Plate;
+pub use points::{GroupSpec, ROWS, WallPoints, box_points, plane_points, polyline_points};

@@ -1,0 +1,173 @@
+//! A gate's plate: a rigid slab that slides along its own length and vanishes behind the end it retracts to.
+
+use super::points::WallPoints;
+use crate::math::{Vector, add, dot, norm, scale, sub};
+
+/// Geometry of a plate: face from `from` along `axis`, body behind it.
+#[derive(Clone, Debug)]
+pub struct Plate<const D: usize> {
+    from: Vector<D>,
+    axis: Vector<D>,
+    /// Unit normal of the face, towards the material.
+    normal: Vector<D>,
+    /// Length of the segment it closes [m].
+    pub length: f64,
+    /// Largest speed [m/s].
+    pub max_speed: f64,
+    /// (distance along the axis from the leading edge, offset off the axis) of each point.
+    points: Vec<(f64, Vector<D>)>,
+    /// Spacing of points along the axis [m].
+    step: f64,
+    thickness: f64,
+    group: u16,
+    /// Index of its first point among the wall points.
+    first: usize,
+}
+
+impl<const D: usize> Plate<D> {
+    /// A plate between two ends. In space it is extruded along `span`; the material lies on the side span x (to - from).
+    #[must_use]
+    pub fn new(
+        ends: [Vector<D>; 2],
+        span: &Vector<D>,
+        thickness: f64,
+        max_speed: f64,
+        spacing: f64,
+        group: u16,
+    ) -> Self {
+        let d = sub(&ends[1], &ends[0]);
+        let length = norm(&d);
+        let axis = scale(1.0 / length, &d);
+        let mut normal = [0.0; D];
+        if D == 2 {
+            normal[0] = -axis[1];
+            normal[1] = axis[0];
+        } else {
+            for k in 0..3 {
+                normal[k] =
+                    span[(k + 1) % 3] * axis[(k + 2) % 3] - span[(k + 2) % 3] * axis[(k + 1) % 3];
+            }
+            normal = scale(1.0 / norm(&normal), &normal);
+        }
+        let along = (length / spacing).round().max(1.0) as usize;
+        let deep = (thickness / spacing).round().max(1.0) as usize;
+        let wide = if D == 2 {
+            1
+        } else {
+            (norm(span) / spacing).round().max(1.0) as usize
+        };
+        let step = length / along as f64;
+        let mut points = Vec::new();
+        for i in 0..along {
+            for k in 0..deep {
+                for m in 0..wide {
+                    let mut offset = scale(-(k as f64 + 0.5) * thickness / deep as f64, &normal);
+                    if D == 3 {
+                        offset = add(&offset, &scale((m as f64 + 0.5) / wide as f64, span));
+                    }
+                    points.push(((i as f64 + 0.5) * step, offset));
+                }
+            }
+        }
+        Self {
+            from: ends[0],
+            axis,
+            normal,
+            length,
+            max_speed,
+            points,
+            step,
+            thickness,
+            group,
+            first: 0,
+        }
+    }
+
+    /// Adds its points to the wall points, at opening 0.
+    pub fn append(&mut self, walls: &mut WallPoints<D>) {
+        self.first = walls.len();
+        for _ in &self.points {
+            walls.push(self.from, [0.0; D], self.normal, 0.0, self.group);
+        }
+        self.place(walls, 0.0, 0.0);
+    }
+
+    /// Range of its points among the wall points.
+    #[must_use]
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.points.len()
+    }
+
+    /// Index of its wall group.
+    #[must_use]
+    pub fn group(&self) -> u16 {
+        self.group
+    }
+
+    /// Velocity at a rate of opening [1/s].
+    #[must_use]
+    pub fn velocity(&self, rate: f64) -> Vector<D> {
+        scale(rate * self.length, &self.axis)
+    }
+
+    /// Puts the points where an opening has them, with the velocity of a rate of opening [1/s].
+    pub fn place(&self, walls: &mut WallPoints<D>, opening: f64, rate: f64) {
+        let velocity = self.velocity(rate);
+        for (n, (u, offset)) in self.points.iter().enumerate() {
+            let s = opening * self.length + u;
+            let i = self.first + n;
+            walls.position[i] = add(&add(&self.from, &scale(s, &self.axis)), offset);
+            walls.velocity[i] = velocity;
+            // What has slid past the end is hidden, the last point by its share.
+            walls.weight[i] = ((self.length - s) / self.step + 0.5).clamp(0.0, 1.0);
+        }
+    }
+
+    /// Unit normal from the nearest point of the plate's surface to `x`, at an opening.
+    #[must_use]
+    pub fn normal_at(&self, x: &Vector<D>, opening: f64) -> Vector<D> {
+        let d = sub(x, &self.from);
+        let along = dot(&d, &self.axis);
+        let height = dot(&d, &self.normal);
+        let nearest_along = along.clamp(opening * self.length, self.length);
+        let nearest_height = height.clamp(-self.thickness, 0.0);
+        let (da, dh) = (along - nearest_along, height - nearest_height);
+        let r = (da * da + dh * dh).sqrt();
+        if r <= 0.0 {
+            return self.normal;
+        }
+        add(&scale(da / r, &self.axis), &scale(dh / r, &self.normal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boundary::GroupSpec;
+
+    #[test]
+    fn half_open_plate_covers_its_far_half() {
+        let mut plate = Plate::<2>::new([[0.0, 0.0], [1.0, 0.0]], &[0.0; 2], 0.4, 1.0, 0.1, 0);
+        let mut walls = WallPoints {
+            groups: vec![GroupSpec {
+                free_slip: true,
+                wants_force: false,
+            }],
+            ..WallPoints::default()
+        };
+        plate.append(&mut walls);
+        plate.place(&mut walls, 0.5, 0.0);
+        let covered: f64 = walls.weight.iter().sum::<f64>() / 4.0 * 0.1;
+        assert!((covered - 0.5).abs() < 1e-12);
+        assert!(
+            walls
+                .position
+                .iter()
+                .zip(&walls.weight)
+                .all(|(x, w)| *w == 0.0 || (x[0] > 0.5 && x[1] < 0.0))
+        );
+        // Normals: above the face up, in front of the leading edge along the axis.
+        assert_eq!(plate.normal_at(&[0.7, 0.1], 0.5), [0.0, 1.0]);
+        assert_eq!(plate.normal_at(&[0.4, -0.2], 0.5), [-1.0, 0.0]);
+    }
+}

@@ -1,0 +1,297 @@
+//! State, solver and gauges of a scene in D dimensions: the one implementation of [`Engine`].
+
+use serde::{Deserialize, Serialize};
+
+use super::engine::{Advance, Devices, Engine, GateState, InflowState, Inputs, SolverError};
+use super::sampling::Sampler;
+use super::snapshot;
+use super::{Error, MassLedger, ParticleView, Statistics};
+use crate::gauge::{Reading, View};
+use crate::math::{Vector, dot};
+use crate::scene::{self, Dimension, Scene};
+use crate::solver::{Solver, StepInputs, three};
+use crate::state::{CellGrid, State};
+
+/// Share of mass with I above this is outside the dense regime ([A] section 2).
+const DENSE_LIMIT: f64 = 0.3;
+
+/// What is saved: the state, and what sections have counted.
+#[derive(Serialize, Deserialize)]
+struct Saved<const D: usize> {
+    state: State<D>,
+    crossed: Vec<f64>,
+}
+
+struct Simulation<const D: usize> {
+    state: State<D>,
+    solver: Solver<D>,
+    sampler: Sampler<D>,
+    devices: Devices,
+    walls: usize,
+    spacing: f64,
+    width: f64,
+    lower: Vector<D>,
+    upper: Vector<D>,
+    periodic: [Option<(f64, f64)>; D],
+}
+
+/// Builds particles, walls, devices and gauges of a scene.
+///
+/// # Errors
+/// [`Error::Setup`] if the scene cannot be built.
+pub(crate) fn build(scene: &Scene) -> Result<Box<dyn Engine>, Error> {
+    match scene.dimension {
+        Dimension::Two => Ok(Box::new(Simulation::<2>::new(scene)?)),
+        Dimension::Three => Ok(Box::new(Simulation::<3>::new(scene)?)),
+    }
+}
+
+impl<const D: usize> Simulation<D> {
+    fn new(scene: &Scene) -> Result<Self, Error> {
+        let (plan, mut state) = scene::build::<D>(scene).map_err(Error::Setup)?;
+        let (lower, upper) = (plan.lower, plan.upper);
+        let periodic =
+            std::array::from_fn(|k| (plan.periodic.length[k] > 0.0).then(|| (lower[k], upper[k])));
+        let mut solver = Solver::new(plan, 1);
+        solver.start(&mut state);
+        let mut simulation = Self {
+            state,
+            solver,
+            sampler: Sampler::new(scene),
+            devices: Devices::default(),
+            walls: scene.walls.len(),
+            spacing: scene.numerics.spacing,
+            width: scene.domain.width,
+            lower,
+            upper,
+            periodic,
+        };
+        simulation.refresh_devices();
+        Ok(simulation)
+    }
+
+    fn refresh_devices(&mut self) {
+        let state = &self.state;
+        let (walls, gates) = state.impulse.split_at(self.walls);
+        self.devices = Devices {
+            gates: state
+                .gates
+                .iter()
+                .zip(gates)
+                .map(|(g, i)| GateState {
+                    opening: g.opening,
+                    blocked: g.blocked,
+                    impulse: three(i),
+                })
+                .collect(),
+            inflows: state
+                .inflows
+                .iter()
+                .map(|i| InflowState {
+                    mass: i.admitted,
+                    blocked: i.blocked,
+                })
+                .collect(),
+            outflow_mass: state.drained.clone(),
+            wall_impulse: walls.iter().map(three).collect(),
+        };
+    }
+
+    fn advance_inside(
+        &mut self,
+        start: f64,
+        end: f64,
+        inputs: &Inputs,
+    ) -> Result<Advance, crate::solver::SolverError> {
+        let mut report = Advance {
+            substeps: 0,
+            smallest_step: f64::INFINITY,
+            bound_by: crate::solver::StepBound::Communication,
+            iterations: 0,
+        };
+        self.state.time = start;
+        while self.state.time < end {
+            let elapsed = self.state.time - start;
+            let openings: Vec<f64> = inputs.gate_opening.iter().map(|r| r.at(elapsed)).collect();
+            let rates: Vec<f64> = inputs.inflow_rate.iter().map(|r| r.at(elapsed)).collect();
+            let Self {
+                state,
+                solver,
+                sampler,
+                ..
+            } = self;
+            let counts = sampler.counts();
+            let done = solver.step(
+                state,
+                end,
+                &StepInputs {
+                    openings: &openings,
+                    rates: &rates,
+                },
+                &mut |before, after, mass| {
+                    if counts {
+                        sampler.count(before, after, mass);
+                    }
+                },
+            )?;
+            report.substeps += 1;
+            report.iterations += done.iterations;
+            if done.dt < report.smallest_step {
+                report.smallest_step = done.dt;
+                report.bound_by = done.bound;
+            }
+            // The last of equal steps ends at the end; rounding does not add another.
+            if end - self.state.time < 1e-9 * done.dt {
+                self.state.time = end;
+            }
+        }
+        Ok(report)
+    }
+
+    fn cells(&self, points: &[Vector<D>]) -> CellGrid<D> {
+        CellGrid::build(points, self.solver.kernel().support(), &self.periodic)
+    }
+}
+
+impl<const D: usize> Engine for Simulation<D> {
+    fn advance(&mut self, start: f64, end: f64, inputs: &Inputs) -> Result<Advance, SolverError> {
+        self.sampler.begin_step();
+        for impulse in &mut self.state.impulse {
+            *impulse = [0.0; D];
+        }
+        let report = self
+            .advance_inside(start, end, inputs)
+            .map_err(|e| SolverError {
+                time: self.state.time,
+                what: e.to_string(),
+            })?;
+        self.refresh_devices();
+        Ok(report)
+    }
+
+    fn devices(&self) -> &Devices {
+        &self.devices
+    }
+
+    fn sample(&self, step: f64) -> Vec<Reading> {
+        let grains = &self.state.grains;
+        let walls = self.solver.walls();
+        let solid: Vec<Vector<D>> = walls
+            .position
+            .iter()
+            .zip(&walls.weight)
+            .filter(|(_, w)| **w > 0.5)
+            .map(|(x, _)| *x)
+            .collect();
+        let cells = self.cells(&grains.position);
+        let solid = self.cells(&solid);
+        let view = View {
+            position: &grains.position,
+            mass: &grains.mass,
+            density: &grains.density,
+            pressure: self.solver.pressure(),
+            cells: &cells,
+            solid: &solid,
+            spacing: self.spacing,
+            kernel: *self.solver.kernel(),
+            width: self.width,
+            lower: self.lower,
+            upper: self.upper,
+            periodic: self.periodic.map(|p| p.is_some()),
+        };
+        self.sampler.sample(&view, &self.devices, step)
+    }
+
+    fn save(&self) -> Result<Vec<u8>, String> {
+        snapshot::encode(&Saved {
+            state: self.state.clone(),
+            crossed: self.sampler.crossed(),
+        })
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), String> {
+        let saved: Saved<D> = snapshot::decode(bytes)?;
+        let fits = saved.state.grains.is_consistent()
+            && saved.state.gates.len() == self.state.gates.len()
+            && saved.state.inflows.len() == self.state.inflows.len()
+            && saved.state.drained.len() == self.state.drained.len()
+            && saved.state.impulse.len() == self.state.impulse.len();
+        if !fits || !self.sampler.set_crossed(&saved.crossed) {
+            return Err("its devices, gauges or particles do not fit this scene".to_owned());
+        }
+        self.state = saved.state;
+        self.solver.resume(&self.state);
+        self.refresh_devices();
+        Ok(())
+    }
+
+    fn ledger(&self) -> MassLedger {
+        MassLedger {
+            initial: self.state.initial_mass,
+            inflow: self.state.inflows.iter().map(|i| i.admitted).sum(),
+            outflow: self.state.drained.iter().sum(),
+            present: self.state.grains.present_mass(),
+        }
+    }
+
+    fn statistics(&self) -> Statistics {
+        let grains = &self.state.grains;
+        let (mut energy, mut fastest, mut mass, mut dilute) = (0.0, 0.0f64, 0.0, 0.0);
+        let mut particles = 0;
+        for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
+            let v2 = dot(&grains.velocity[i], &grains.velocity[i]);
+            particles += 1;
+            energy += 0.5 * grains.mass[i] * v2;
+            fastest = fastest.max(v2.sqrt());
+            // Sand without pressure is not dense whatever its I, but it carries no stress either: it counts as mass only.
+            if self.solver.pressure()[i] > 0.0 {
+                mass += grains.mass[i];
+                if self.solver.inertial_number()[i] > DENSE_LIMIT {
+                    dilute += grains.mass[i];
+                }
+            }
+        }
+        Statistics {
+            communication_steps: 0,
+            steps: self.state.steps,
+            iterations: self.state.iterations,
+            particles,
+            step_size: self.state.step_size,
+            kinetic_energy: energy,
+            max_speed: fastest,
+            share_dilute: if mass > 0.0 { dilute / mass } else { 0.0 },
+        }
+    }
+
+    fn particles(&self) -> ParticleView {
+        let grains = &self.state.grains;
+        let mut view = ParticleView::default();
+        for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
+            view.position
+                .push(three(&grains.position[i]).map(|c| c as f32));
+            view.velocity
+                .push(three(&grains.velocity[i]).map(|c| c as f32));
+            view.pressure.push(self.solver.pressure()[i] as f32);
+            view.inertial_number
+                .push(self.solver.inertial_number()[i] as f32);
+            view.phase.push(grains.phase[i]);
+            view.asleep.push(0);
+        }
+        view
+    }
+
+    fn wall_points(&self) -> Vec<[f64; 3]> {
+        let walls = self.solver.walls();
+        walls
+            .position
+            .iter()
+            .zip(&walls.weight)
+            .filter(|(_, w)| **w > 0.0)
+            .map(|(x, _)| three(x))
+            .collect()
+    }
+
+    fn set_threads(&mut self, threads: usize) {
+        self.solver.set_threads(threads);
+    }
+}

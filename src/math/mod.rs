@@ -1,0 +1,179 @@
+//! Rank 0: small vectors and tensors as plain arrays, order-fixed sums, the thread pool. No physics.
+//!
+//! Arrays instead of nalgebra types here because these sit in the hot loops; nalgebra serves the edges.
+
+mod sum;
+mod workers;
+
+pub use sum::{dot_rows, maximum, sum_rows};
+pub use workers::{CHUNK, Workers};
+
+/// A vector of D components.
+pub type Vector<const D: usize> = [f64; D];
+/// A D x D tensor, `t[row][column]`.
+pub type Tensor<const D: usize> = [[f64; D]; D];
+
+/// Scalar product.
+#[inline(always)]
+#[must_use]
+pub fn dot<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> f64 {
+    let mut s = 0.0;
+    for k in 0..D {
+        s += a[k] * b[k];
+    }
+    s
+}
+
+/// a - b.
+#[inline(always)]
+#[must_use]
+pub fn sub<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
+    std::array::from_fn(|k| a[k] - b[k])
+}
+
+/// a + b.
+#[inline(always)]
+#[must_use]
+pub fn add<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
+/// s a.
+#[inline(always)]
+#[must_use]
+pub fn scale<const D: usize>(s: f64, a: &Vector<D>) -> Vector<D> {
+    std::array::from_fn(|k| s * a[k])
+}
+
+/// Euclidean norm.
+#[inline(always)]
+#[must_use]
+pub fn norm<const D: usize>(a: &Vector<D>) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Adds s a (x) b to t.
+#[inline(always)]
+pub fn add_outer<const D: usize>(t: &mut Tensor<D>, s: f64, a: &Vector<D>, b: &Vector<D>) {
+    for r in 0..D {
+        for c in 0..D {
+            t[r][c] += s * a[r] * b[c];
+        }
+    }
+}
+
+/// t . a.
+#[inline(always)]
+#[must_use]
+pub fn apply<const D: usize>(t: &Tensor<D>, a: &Vector<D>) -> Vector<D> {
+    std::array::from_fn(|r| dot(&t[r], a))
+}
+
+/// a . b for tensors.
+#[inline(always)]
+#[must_use]
+pub fn multiply<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|r| {
+        std::array::from_fn(|c| {
+            let mut s = 0.0;
+            for k in 0..D {
+                s += a[r][k] * b[k][c];
+            }
+            s
+        })
+    })
+}
+
+/// Trace.
+#[inline(always)]
+#[must_use]
+pub fn trace<const D: usize>(t: &Tensor<D>) -> f64 {
+    let mut s = 0.0;
+    for (k, row) in t.iter().enumerate() {
+        s += row[k];
+    }
+    s
+}
+
+/// Deviator of the symmetric part: e = sym(g) - tr(g)/D I.
+#[inline(always)]
+#[must_use]
+pub fn strain_deviator<const D: usize>(g: &Tensor<D>) -> Tensor<D> {
+    let mean = trace(g) / D as f64;
+    std::array::from_fn(|r| {
+        std::array::from_fn(|c| {
+            let s = 0.5 * (g[r][c] + g[c][r]);
+            if r == c { s - mean } else { s }
+        })
+    })
+}
+
+/// gamma = sqrt(2 e:e) of a deviator e.
+#[inline(always)]
+#[must_use]
+pub fn shear_rate<const D: usize>(e: &Tensor<D>) -> f64 {
+    let mut s = 0.0;
+    for row in e {
+        s += dot(row, row);
+    }
+    (2.0 * s).sqrt()
+}
+
+/// Determinant (D = 2 or 3).
+#[inline(always)]
+#[must_use]
+pub fn determinant<const D: usize>(m: &Tensor<D>) -> f64 {
+    if D == 2 {
+        m[0][0] * m[1][1] - m[0][1] * m[1][0]
+    } else {
+        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1])
+            - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+    }
+}
+
+/// Inverse by cofactors (D = 2 or 3); the caller has checked the determinant.
+#[inline(always)]
+#[must_use]
+pub fn inverse<const D: usize>(m: &Tensor<D>) -> Tensor<D> {
+    let f = 1.0 / determinant(m);
+    let mut r = [[0.0; D]; D];
+    if D == 2 {
+        r[0][0] = f * m[1][1];
+        r[0][1] = -f * m[0][1];
+        r[1][0] = -f * m[1][0];
+        r[1][1] = f * m[0][0];
+    } else {
+        for i in 0..3 {
+            for j in 0..3 {
+                let (a, b) = ((j + 1) % 3, (j + 2) % 3);
+                let (c, d) = ((i + 1) % 3, (i + 2) % 3);
+                r[i][j] = f * (m[a][c] * m[b][d] - m[a][d] * m[b][c]);
+            }
+        }
+    }
+    r
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_times_matrix_is_identity() {
+        let m = [[2.0, 0.3, -0.1], [0.2, 1.5, 0.4], [-0.3, 0.1, 0.9]];
+        let p = multiply(&inverse(&m), &m);
+        for (r, row) in p.iter().enumerate() {
+            for (c, v) in row.iter().enumerate() {
+                assert!((v - f64::from(u8::from(r == c))).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn simple_shear_has_its_own_rate() {
+        let mut g = [[0.0; 2]; 2];
+        g[0][1] = 3.0;
+        assert!((shear_rate(&strain_deviator(&g)) - 3.0).abs() < 1e-14);
+    }
+}

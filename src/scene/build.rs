@@ -1,0 +1,330 @@
+//! Scene to what the solver runs: particles, wall points, devices. The last function that knows scenes.
+
+use crate::boundary::{GroupSpec, Plate, WallPoints, box_points, plane_points, polyline_points};
+use crate::math::{Vector, add, dot, norm, scale};
+use crate::shape::lattice;
+use crate::solver::{Periodic, Plan, Sink, Source};
+use crate::state::{GateState, Grains, InflowState, Random, State};
+
+use super::{ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, WallGeometry};
+
+/// The first D components of a point.
+#[must_use]
+pub fn narrow<const D: usize>(point: &Point) -> Vector<D> {
+    std::array::from_fn(|k| point[k])
+}
+
+/// Solver plan and start state of a scene whose dimension is D.
+///
+/// # Errors
+/// A sentence: no particles and no inflow, a particle inside a wall, a periodic side too short for the kernel.
+pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), String> {
+    let periodic = periodic::<D>(scene)?;
+    let plates = plates::<D>(scene);
+    let walls = walls::<D>(scene, &periodic);
+    let sources = scene.inflows.iter().map(|i| source(scene, i)).collect();
+    let sinks = scene
+        .outflows
+        .iter()
+        .map(|o| Sink {
+            lower: narrow(&o.lower),
+            upper: narrow(&o.upper),
+        })
+        .collect();
+    let state = state::<D>(scene)?;
+    let plan = Plan {
+        numerics: scene.numerics.clone(),
+        gravity: narrow(&scene.domain.gravity),
+        width: scene.domain.width,
+        lower: narrow(&scene.domain.lower),
+        upper: narrow(&scene.domain.upper),
+        periodic,
+        materials: scene.materials.iter().map(|m| m.material.clone()).collect(),
+        walls,
+        plates,
+        sources,
+        sinks,
+    };
+    check_overlap(&plan, &state)?;
+    Ok((plan, state))
+}
+
+fn periodic<const D: usize>(scene: &Scene) -> Result<Periodic<D>, String> {
+    let domain = &scene.domain;
+    // Support 4 h and the lists' skin, on both sides of a particle.
+    let least = 2.0 * (2.0 + 0.3) * scene.numerics.spacing * scene.numerics.smoothing_ratio;
+    let mut length = [0.0; D];
+    for k in 0..D {
+        if domain.periodic[k] {
+            length[k] = domain.upper[k] - domain.lower[k];
+            if length[k] < least {
+                return Err(format!(
+                    "the periodic side along axis {k} is {} m long; allowed at least {least} m (4.6 h): lengthen the domain or refine the spacing",
+                    length[k]
+                ));
+            }
+        }
+    }
+    Ok(Periodic {
+        lower: narrow(&domain.lower),
+        length,
+    })
+}
+
+/// Mass of a particle, rounded to a multiple of a power of two so that sums of up to 2^28 particles are exact [kg].
+fn exact_mass(mass: f64) -> f64 {
+    let quantum = 2f64.powi(mass.log2().floor() as i32 - 24);
+    (mass / quantum).round() * quantum
+}
+
+fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
+    let mut random = Random::new(scene.numerics.seed);
+    let mut grains = Grains::default();
+    let mut id = 0;
+    let up = up_axis(scene);
+    let jitter = scene.numerics.jitter * scene.numerics.spacing;
+    for body in &scene.bodies {
+        let material = &scene.materials[body.material].material;
+        let lattice = lattice(
+            &body.shape,
+            body.level.map(|l| (up, l)),
+            scene.numerics.spacing,
+            D,
+        );
+        let mass = exact_mass(material.rest_density() * lattice.cell_volume * scene.domain.width);
+        for place in &lattice.points {
+            let position: Vector<D> =
+                std::array::from_fn(|k| place[k] + jitter * random.symmetric());
+            let density =
+                material.density_under(load_above(scene, place, up), scene.numerics.sound_speed);
+            grains.push(
+                id,
+                body.material as u8,
+                position,
+                narrow(&body.velocity),
+                mass,
+                density,
+            );
+            id += 1;
+        }
+    }
+    if grains.is_empty() && scene.inflows.is_empty() {
+        return Err("the scene has no particles and no inflow: add a body that holds at least one particle spacing".to_owned());
+    }
+    let gates = scene
+        .gates
+        .iter()
+        .map(|g| GateState {
+            opening: g.start,
+            rate: 0.0,
+            blocked: false,
+            listed_opening: g.start,
+        })
+        .collect();
+    Ok(State {
+        time: 0.0,
+        initial_mass: grains.present_mass(),
+        grains,
+        gates,
+        inflows: vec![InflowState::default(); scene.inflows.len()],
+        drained: vec![0.0; scene.outflows.len()],
+        impulse: vec![[0.0; D]; scene.walls.len() + scene.gates.len()],
+        next_id: id,
+        steps: 0,
+        iterations: 0,
+        step_size: 0.0,
+        random,
+    })
+}
+
+/// Axis most against gravity.
+fn up_axis(scene: &Scene) -> usize {
+    let g = &scene.domain.gravity;
+    (0..3).fold(
+        0,
+        |best, k| if g[k].abs() > g[best].abs() { k } else { best },
+    )
+}
+
+/// Weight of the material above a place, along the up axis [Pa]: the starting pressure.
+fn load_above(scene: &Scene, place: &Point, up: usize) -> f64 {
+    let g = scene.domain.gravity[up];
+    let dp = scene.numerics.spacing;
+    let direction = if g < 0.0 { 1.0 } else { -1.0 };
+    let mut load = 0.0;
+    for body in &scene.bodies {
+        let (lower, upper) = body.shape.bounds();
+        let top = if direction > 0.0 {
+            body.level.map_or(upper[up], |l| l.min(upper[up]))
+        } else {
+            lower[up]
+        };
+        let height = direction * (top - place[up]);
+        if height <= 0.0 || !height.is_finite() {
+            continue;
+        }
+        let rho = scene.materials[body.material].material.rest_density();
+        let count = (height / dp).ceil();
+        let step = height / count;
+        for n in 0..count as usize {
+            let mut x = *place;
+            x[up] += direction * (n as f64 + 0.5) * step;
+            if body.shape.contains(&x) {
+                load += rho * g.abs() * step;
+            }
+        }
+    }
+    load
+}
+
+fn group(scene: &Scene, slip: Slip, target: ForceTarget) -> GroupSpec {
+    let wants_force = scene
+        .gauges
+        .iter()
+        .any(|g| matches!(g.kind, GaugeKind::Force { on } if on == target));
+    GroupSpec {
+        free_slip: slip == Slip::FreeSlip,
+        wants_force,
+    }
+}
+
+fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D> {
+    let dp = scene.numerics.spacing;
+    let mut points = WallPoints::default();
+    for (n, wall) in scene.walls.iter().enumerate() {
+        points
+            .groups
+            .push(group(scene, wall.slip, ForceTarget::Wall(n)));
+        let velocity = narrow(&wall.velocity);
+        match &wall.geometry {
+            WallGeometry::Polyline {
+                points: corners,
+                closed,
+            } => {
+                for (x, normal, weight) in polyline_points(corners, *closed, dp) {
+                    points.push(
+                        narrow(&[x[0], x[1], 0.0]),
+                        velocity,
+                        narrow(&[normal[0], normal[1], 0.0]),
+                        weight,
+                        n as u16,
+                    );
+                }
+            }
+            WallGeometry::Box { lower, upper } => {
+                for (x, normal) in box_points::<D>(&narrow(lower), &narrow(upper), dp) {
+                    points.push(x, velocity, normal, 1.0, n as u16);
+                }
+            }
+            WallGeometry::Plane { point, normal } => {
+                let normal = narrow(normal);
+                let sides = std::array::from_fn(|k| periodic.length[k] > 0.0);
+                let (lower, upper) = (narrow(&scene.domain.lower), narrow(&scene.domain.upper));
+                for x in plane_points::<D>(&narrow(point), &normal, &lower, &upper, &sides, dp) {
+                    points.push(x, velocity, normal, 1.0, n as u16);
+                }
+            }
+        }
+    }
+    points.drop_doubles(dp);
+    for (n, gate) in scene.gates.iter().enumerate() {
+        points
+            .groups
+            .push(group(scene, gate.slip, ForceTarget::Gate(n)));
+    }
+    points
+}
+
+fn plates<const D: usize>(scene: &Scene) -> Vec<Plate<D>> {
+    let dp = scene.numerics.spacing;
+    let number = |n: usize| (scene.walls.len() + n) as u16;
+    let plate = |(n, g): (usize, &super::Gate)| {
+        Plate::new(
+            [narrow(&g.from), narrow(&g.to)],
+            &narrow(&g.span),
+            g.thickness,
+            g.max_speed,
+            dp,
+            number(n),
+        )
+    };
+    scene.gates.iter().enumerate().map(plate).collect()
+}
+
+/// Slots half a spacing inside the face, so that a row clears it as it appears.
+fn source<const D: usize>(scene: &Scene, inflow: &Inflow) -> Source<D> {
+    let dp = scene.numerics.spacing;
+    let material = &scene.materials[inflow.material].material;
+    let (from, to, span) = (
+        narrow::<D>(&inflow.from),
+        narrow::<D>(&inflow.to),
+        narrow::<D>(&inflow.span),
+    );
+    let edge: Vector<D> = std::array::from_fn(|k| to[k] - from[k]);
+    let velocity = narrow::<D>(&inflow.velocity);
+    let along = (norm(&edge) / dp).round().max(1.0) as usize;
+    let wide = if D == 2 {
+        1
+    } else {
+        (norm(&span) / dp).round().max(1.0) as usize
+    };
+    let clear = scale(0.5 * dp / norm(&velocity), &velocity);
+    let mut slots = Vec::new();
+    for i in 0..along {
+        for m in 0..wide {
+            let mut x = add(
+                &add(&from, &clear),
+                &scale((i as f64 + 0.5) / along as f64, &edge),
+            );
+            if D == 3 {
+                x = add(&x, &scale((m as f64 + 0.5) / wide as f64, &span));
+            }
+            slots.push(x);
+        }
+    }
+    let density = material.rest_density();
+    Source {
+        slots,
+        velocity,
+        phase: inflow.material as u8,
+        particle_mass: exact_mass(density * dp.powi(D as i32) * scene.domain.width),
+        density,
+    }
+}
+
+/// No particle may start inside a wall or gate.
+fn check_overlap<const D: usize>(plan: &Plan<D>, state: &State<D>) -> Result<(), String> {
+    let near = 0.3 * plan.numerics.spacing;
+    let sides: [Option<(f64, f64)>; D] = std::array::from_fn(|k| {
+        (plan.periodic.length[k] > 0.0).then(|| (plan.lower[k], plan.upper[k]))
+    });
+    let mut walls = plan.walls.clone();
+    for (plate, gate) in plan.plates.iter().zip(&state.gates) {
+        let mut plate = plate.clone();
+        plate.append(&mut walls);
+        plate.place(&mut walls, gate.opening, 0.0);
+    }
+    let visible: Vec<Vector<D>> = walls
+        .position
+        .iter()
+        .zip(&walls.weight)
+        .filter(|(_, w)| **w > 0.5)
+        .map(|(x, _)| *x)
+        .collect();
+    let cells = crate::state::CellGrid::build(&visible, plan.numerics.spacing, &sides);
+    for x in &state.grains.position {
+        let mut hit = None;
+        cells.for_each_within(x, near, |_, w, _| hit = Some(w));
+        if let Some(w) = hit {
+            return Err(format!(
+                "a particle starts at {:?} m, inside a wall or gate (wall point at {:?} m): move the body or the wall apart",
+                &x[..],
+                &w[..]
+            ));
+        }
+        if dot(x, x).is_nan() {
+            return Err("a particle starts at a position that is not a number".to_owned());
+        }
+    }
+    Ok(())
+}

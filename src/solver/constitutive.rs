@@ -1,0 +1,135 @@
+//! Per particle: density, relaxed strain rate, pressure from the equation of state, viscosity from the rheology
+//! (docs/theory.md, E5 and E6). No neighbours here.
+
+use crate::material::{Material, MuI, Rheology, grain_compression};
+use crate::state::State;
+
+use super::numerics::Scheme;
+use super::{Solver, SolverError};
+
+/// Shear rates below this count as none [1/s]: far below any that matters, far above rounding.
+const STILL: f64 = 1e-12;
+
+/// Pressure, viscosity and inertial number of one particle.
+struct Response {
+    pressure: f64,
+    viscosity: f64,
+    inertial_number: f64,
+}
+
+impl<const D: usize> Solver<D> {
+    /// rho and the relaxed strain rate over a step, from the kinematics at its end.
+    pub(super) fn advance_density(&self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
+        let relax = 1.0 - (-dt / self.numerics.strain_relaxation_time).exp();
+        let grains = &mut state.grains;
+        for i in 0..grains.len() {
+            let k = &self.kinematics[i];
+            // Exact for a constant divergence, and positive whatever the step.
+            let rho = grains.density[i] * (-dt * k.divergence).exp();
+            if !(rho.is_finite() && rho > 0.0) {
+                return Err(SolverError::NotFinite {
+                    particle: grains.id[i],
+                    time: state.time,
+                    quantity: "density",
+                    position: crate::solver::three(&grains.position[i]),
+                });
+            }
+            grains.density[i] = rho;
+            let rate = k.correction * k.shear;
+            grains.relaxed_shear[i] += relax * (rate - grains.relaxed_shear[i]);
+        }
+        Ok(())
+    }
+
+    /// V = m / (rho width), areas in the plane.
+    pub(super) fn update_volumes(&mut self, state: &State<D>) {
+        let grains = &state.grains;
+        for (v, (m, rho)) in self
+            .volume
+            .iter_mut()
+            .zip(grains.mass.iter().zip(&grains.density))
+        {
+            *v = m / (rho * self.width);
+        }
+    }
+
+    /// Pressures and viscosities from the state and its kinematics.
+    pub(super) fn respond(&mut self, state: &State<D>) {
+        let n = state.grains.len();
+        self.pressure.resize(n, 0.0);
+        self.viscosity.resize(n, 0.0);
+        self.pair_viscosity.resize(n, 0.0);
+        self.inertial_number.resize(n, 0.0);
+        self.update_volumes(state);
+        for i in 0..n {
+            let k = self.kinematics[i];
+            let response = match &self.materials[state.grains.phase[i] as usize] {
+                Material::MuI(m) => self.granular(
+                    m,
+                    state.grains.density[i],
+                    state.grains.relaxed_shear[i],
+                    k.shear,
+                    k.correction,
+                ),
+            };
+            self.pressure[i] = response.pressure;
+            self.viscosity[i] = response.viscosity;
+            self.inertial_number[i] = response.inertial_number;
+            self.pair_viscosity[i] = match self.numerics.scheme {
+                Scheme::Implicit => response.viscosity * k.pair_scale,
+                Scheme::Explicit => response.viscosity,
+            };
+        }
+    }
+
+    /// mu(I) sand: [A] eqs. 6, 7, 41, 43, 44 with the cap (or [A]'s regularisation in the explicit scheme).
+    fn granular(&self, m: &MuI, rho: f64, relaxed: f64, shear: f64, correction: f64) -> Response {
+        let c0 = self.numerics.sound_speed;
+        let compressibility = 1.0 / (m.phi_max * m.grain_density * c0 * c0);
+        let r = rho / (m.grain_density * m.phi_max);
+        let x = grain_compression::<D>(r, m.dilatancy_factor(compressibility) * relaxed * relaxed);
+        let pressure = (x - 1.0) / compressibility;
+        if pressure <= 0.0 {
+            return Response {
+                pressure: 0.0,
+                viscosity: 0.0,
+                inertial_number: 0.0,
+            };
+        }
+        let grain_size = m.grain_diameter
+            * if D == 2 {
+                1.0 / x.sqrt()
+            } else {
+                1.0 / x.cbrt()
+            };
+        let grain_density = x * m.grain_density;
+        let inertial_number = correction * shear * grain_size * (grain_density / pressure).sqrt();
+        let viscosity = match self.numerics.scheme {
+            Scheme::Implicit => {
+                let cap = self.numerics.cap_time * m.yield_stress(pressure);
+                if shear > STILL {
+                    (m.friction(inertial_number) * pressure / shear).min(cap)
+                } else {
+                    cap
+                }
+            }
+            Scheme::Explicit => m.regularised_viscosity(
+                shear,
+                pressure,
+                self.numerics.cap_time,
+                m.mu_s * self.reference_pressure(m),
+            ),
+        };
+        Response {
+            pressure,
+            viscosity,
+            inertial_number,
+        }
+    }
+
+    /// tau_0/mu_s of [A]'s regularisation: the load of the deepest material, c0^2 rho/100 by the choice of c0 [Pa].
+    fn reference_pressure(&self, m: &MuI) -> f64 {
+        let c0 = self.numerics.sound_speed;
+        m.grain_density * m.phi_max * c0 * c0 / 100.0
+    }
+}

@@ -1,0 +1,198 @@
+//! Gates, inflows and outflows: what moves, adds and takes out between two internal steps.
+
+use crate::math::{CHUNK, Vector, add, dot, norm, scale, sub};
+use crate::state::State;
+
+use super::Solver;
+
+/// A face that lets rows of particles in.
+#[derive(Clone, Debug)]
+pub struct Source<const D: usize> {
+    /// Where a row's particles appear [m].
+    pub slots: Vec<Vector<D>>,
+    /// Their velocity [m/s].
+    pub velocity: Vector<D>,
+    /// Index of the material.
+    pub phase: u8,
+    /// Mass of one particle [kg].
+    pub particle_mass: f64,
+    /// Density they come with [kg/m^3].
+    pub density: f64,
+}
+
+/// A box that takes particles out.
+#[derive(Clone, Copy, Debug)]
+pub struct Sink<const D: usize> {
+    /// Lower corner [m].
+    pub lower: Vector<D>,
+    /// Upper corner [m].
+    pub upper: Vector<D>,
+}
+
+impl<const D: usize> Source<D> {
+    /// Mass of a row [kg].
+    #[must_use]
+    pub fn row_mass(&self) -> f64 {
+        self.particle_mass * self.slots.len() as f64
+    }
+}
+
+impl<const D: usize> Solver<D> {
+    /// Moves plates towards the openings wanted; a plate that would run into material stops and says so.
+    pub(super) fn move_gates(&mut self, state: &mut State<D>, wanted: &[f64], dt: f64) {
+        for g in 0..self.plates.len() {
+            let plate = &self.plates[g];
+            let gate = state.gates[g];
+            let most = (plate.max_speed * dt).min(0.1 * self.kernel.h) / plate.length;
+            let change = (wanted[g] - gate.opening).clamp(-most, most);
+            let mut rate = change / dt;
+            let blocked = change != 0.0 && self.is_blocked(state, g, &plate.velocity(rate));
+            if blocked {
+                rate = 0.0;
+            }
+            let opening = if blocked {
+                gate.opening
+            } else {
+                (gate.opening + change).clamp(0.0, 1.0)
+            };
+            let gate = &mut state.gates[g];
+            (gate.opening, gate.rate, gate.blocked) = (opening, rate, blocked);
+            self.plates[g].place(&mut self.walls, opening, rate);
+        }
+    }
+
+    /// Whether a particle stands closer than half a spacing in the way of a plate that moves with `velocity`.
+    fn is_blocked(&self, state: &State<D>, gate: usize, velocity: &Vector<D>) -> bool {
+        let group = self.plates[gate].group();
+        let near = 0.5 * self.numerics.spacing;
+        for (c, block) in self.lists.blocks.iter().enumerate() {
+            for row in 0..block.rows() {
+                for &w in block.wall_row(row) {
+                    if self.walls.group[w as usize] != group || self.walls.weight[w as usize] == 0.0
+                    {
+                        continue;
+                    }
+                    let (x, r) = self.wall_offset(&state.grains.position[c * CHUNK + row], w);
+                    if r < near && dot(&x, velocity) > 0.0 {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    /// Counts and marks what has entered a sink; removal waits for the next lists.
+    pub(super) fn drain(&self, state: &mut State<D>) {
+        for (s, sink) in self.sinks.iter().enumerate() {
+            for i in 0..state.grains.len() {
+                let x = &state.grains.position[i];
+                let inside = (0..D).all(|k| x[k] >= sink.lower[k] && x[k] <= sink.upper[k]);
+                if inside && !state.grains.drained[i] {
+                    state.grains.drained[i] = true;
+                    state.drained[s] += state.grains.mass[i];
+                }
+            }
+        }
+    }
+
+    /// Lets rows in where they are due and have room; returns whether any came.
+    pub(super) fn feed(&self, state: &mut State<D>, rates: &[f64], dt: f64) -> bool {
+        let mut came = false;
+        for (n, source) in self.sources.iter().enumerate() {
+            let row = source.row_mass();
+            let inflow = &mut state.inflows[n];
+            inflow.pending += rates[n] * dt;
+            if inflow.pending < row {
+                continue;
+            }
+            let room = 0.6 * self.numerics.spacing;
+            let taken = state.grains.position.iter().any(|x| {
+                source
+                    .slots
+                    .iter()
+                    .any(|slot| norm(&self.periodic.difference(x, slot)) < room)
+            });
+            inflow.blocked = taken;
+            if taken {
+                // What cannot enter is refused, not saved up for a burst.
+                inflow.pending = row;
+                continue;
+            }
+            inflow.pending -= row;
+            inflow.admitted += row;
+            came = true;
+            for slot in &source.slots {
+                let jitter: Vector<D> = std::array::from_fn(|_| state.random.symmetric());
+                let x = add(
+                    slot,
+                    &scale(self.numerics.jitter * self.numerics.spacing, &jitter),
+                );
+                let id = state.next_id;
+                state.next_id += 1;
+                state.grains.push(
+                    id,
+                    source.phase,
+                    x,
+                    source.velocity,
+                    source.particle_mass,
+                    source.density,
+                );
+            }
+        }
+        came
+    }
+
+    /// Impulse of the material on walls whose force somebody reads, over one step [N s].
+    pub(super) fn add_reactions(&mut self, state: &mut State<D>, dt: f64) {
+        if !self.walls.groups.iter().any(|g| g.wants_force) {
+            return;
+        }
+        let tau = self.last_stress(state);
+        let share = self.numerics.pair_viscosity_share;
+        let support = self.kernel.support();
+        let viscous = self.numerics.scheme == super::Scheme::Implicit;
+        let dissipation = 2.0 * (D as f64 + 2.0);
+        for (b, block) in self.lists.blocks.iter().enumerate() {
+            for row in 0..block.rows() {
+                let i = b * CHUNK + row;
+                let (xi, vi) = (&state.grains.position[i], &self.viscous.velocity[i]);
+                for &w in block.wall_row(row) {
+                    let group = self.walls.group[w as usize] as usize;
+                    let weight = self.walls.weight[w as usize];
+                    let (x, r) = self.wall_offset(xi, w);
+                    if !self.walls.groups[group].wants_force
+                        || weight == 0.0
+                        || r >= support
+                        || r == 0.0
+                    {
+                        continue;
+                    }
+                    let volume = self.volume[i];
+                    let vf = volume * weight * self.kernel.f(r);
+                    let g = scale(vf, &x);
+                    // On the particle: -2 p g + 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w), times V_i.
+                    let projection = self.wall_projection(xi, w, state);
+                    let seen = |a: Vector<D>| -> Vector<D> {
+                        projection.map_or(a, |n| scale(dot(&n, &a), &n))
+                    };
+                    let mut force = scale(-2.0 * self.pressure[i], &g);
+                    let factor = if viscous {
+                        force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau[i], &g))));
+                        share
+                    } else {
+                        1.0
+                    };
+                    let pg = seen(g);
+                    let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];
+                    let drag =
+                        -2.0 * factor * c * dot(&pg, &sub(vi, &self.walls.velocity[w as usize]));
+                    force = add(&force, &scale(drag, &pg));
+                    for k in 0..D {
+                        state.impulse[group][k] -= dt * self.width * volume * force[k];
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Cells of one list radius over the particles' own bounding box, with periodic axes; counting sort, fixed order.
+
+use crate::math::Vector;
+
+/// Which axes repeat, and over what length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Periodic<const D: usize> {
+    /// Lower end of each axis [m].
+    pub lower: Vector<D>,
+    /// Length of each periodic axis [m]; 0 for axes that are not periodic.
+    pub length: Vector<D>,
+}
+
+impl<const D: usize> Periodic<D> {
+    /// Nearest image of a - b.
+    #[inline(always)]
+    #[must_use]
+    pub fn difference(&self, a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
+        std::array::from_fn(|k| {
+            let d = a[k] - b[k];
+            let l = self.length[k];
+            if l > 0.0 {
+                if d > 0.5 * l {
+                    d - l
+                } else if d < -0.5 * l {
+                    d + l
+                } else {
+                    d
+                }
+            } else {
+                d
+            }
+        })
+    }
+
+    /// Moves a point back into the periodic box.
+    pub fn wrap(&self, x: &mut Vector<D>) {
+        for k in 0..D {
+            let l = self.length[k];
+            if l > 0.0 {
+                let t = x[k] - self.lower[k];
+                if !(0.0..l).contains(&t) {
+                    x[k] = self.lower[k] + t.rem_euclid(l);
+                }
+            }
+        }
+    }
+}
+
+/// Points sorted by cell.
+pub(super) struct Grid<'a, const D: usize> {
+    periodic: &'a Periodic<D>,
+    origin: Vector<D>,
+    edge: Vector<D>,
+    count: [usize; D],
+    start: Vec<u32>,
+    order: Vec<u32>,
+}
+
+impl<'a, const D: usize> Grid<'a, D> {
+    /// Bins points in cells at least `edge` wide.
+    pub(super) fn build(points: &[Vector<D>], edge: f64, periodic: &'a Periodic<D>) -> Self {
+        let mut low = [f64::INFINITY; D];
+        let mut high = [f64::NEG_INFINITY; D];
+        for x in points {
+            for k in 0..D {
+                low[k] = low[k].min(x[k]);
+                high[k] = high[k].max(x[k]);
+            }
+        }
+        let mut count = [1usize; D];
+        let mut edges = [edge; D];
+        for k in 0..D {
+            if periodic.length[k] > 0.0 {
+                low[k] = periodic.lower[k];
+                count[k] = ((periodic.length[k] / edge).floor() as usize).max(1);
+                edges[k] = periodic.length[k] / count[k] as f64;
+            } else if high[k] >= low[k] {
+                // Points far apart (spray) get wider cells rather than a table larger than the points deserve.
+                let most = ((4 * points.len() + 64) as f64)
+                    .powf(1.0 / D as f64)
+                    .ceil()
+                    .max(8.0)
+                    * 4.0;
+                edges[k] = edge.max((high[k] - low[k]) / most);
+                count[k] = ((high[k] - low[k]) / edges[k]).floor() as usize + 1;
+            } else {
+                low[k] = 0.0;
+            }
+        }
+        let mut grid = Self {
+            periodic,
+            origin: low,
+            edge: edges,
+            count,
+            start: Vec::new(),
+            order: Vec::new(),
+        };
+        let cells: Vec<u32> = points
+            .iter()
+            .map(|x| grid.index(&grid.cell(x)) as u32)
+            .collect();
+        let total: usize = count.iter().product();
+        let mut start = vec![0u32; total + 1];
+        for &c in &cells {
+            start[c as usize + 1] += 1;
+        }
+        for c in 0..total {
+            start[c + 1] += start[c];
+        }
+        let mut next = start.clone();
+        let mut order = vec![0u32; points.len()];
+        for (i, &c) in cells.iter().enumerate() {
+            order[next[c as usize] as usize] = i as u32;
+            next[c as usize] += 1;
+        }
+        grid.start = start;
+        grid.order = order;
+        grid
+    }
+
+    /// Points in cell order.
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Cell of a point, which may lie outside the box.
+    fn cell(&self, x: &Vector<D>) -> [i64; D] {
+        std::array::from_fn(|k| {
+            let c = ((x[k] - self.origin[k]) / self.edge[k]).floor() as i64;
+            if self.periodic.length[k] > 0.0 {
+                c.rem_euclid(self.count[k] as i64)
+            } else {
+                c
+            }
+        })
+    }
+
+    fn index(&self, c: &[i64; D]) -> usize {
+        let mut n = 0usize;
+        for k in (0..D).rev() {
+            n = n * self.count[k] + (c[k].clamp(0, self.count[k] as i64 - 1) as usize);
+        }
+        n
+    }
+
+    /// Calls `f` for every point in the cells around `x`, each once, in a fixed order.
+    #[inline]
+    pub(super) fn for_near(&self, x: &Vector<D>, mut f: impl FnMut(u32)) {
+        let here = self.cell(x);
+        // Per axis the cells to visit; short periodic axes name each cell once.
+        let mut axes = [[0i64; 3]; D];
+        let mut lengths = [0usize; D];
+        for k in 0..D {
+            let n = self.count[k] as i64;
+            for o in -1..=1 {
+                let mut c = here[k] + o;
+                if self.periodic.length[k] > 0.0 {
+                    c = c.rem_euclid(n);
+                    if axes[k][..lengths[k]].contains(&c) {
+                        continue;
+                    }
+                } else if c < 0 || c >= n {
+                    continue;
+                }
+                axes[k][lengths[k]] = c;
+                lengths[k] += 1;
+            }
+        }
+        let outer: usize = lengths[1..].iter().product();
+        for m in 0..outer {
+            let mut rest = m;
+            let mut c = [0i64; D];
+            for k in 1..D {
+                c[k] = axes[k][rest % lengths[k]];
+                rest /= lengths[k];
+            }
+            for &first in &axes[0][..lengths[0]] {
+                c[0] = first;
+                let cell = self.index(&c);
+                for &j in &self.order[self.start[cell] as usize..self.start[cell + 1] as usize] {
+                    f(j);
+                }
+            }
+        }
+    }
+}

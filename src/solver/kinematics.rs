@@ -1,0 +1,300 @@
+//! One sweep over pairs at the current positions and velocities: pair coefficients, velocity gradient, kernel
+//! correction, dissipation of the pair form, largest relative speed (docs/theory.md, E1 to E4).
+//!
+//! Symbols: F = W'(r)/r <= 0, grad W_ij = F x_ij, x_ij = x_i - x_j, v_ij = v_i - v_j, V = m/rho.
+
+use crate::math::{
+    Tensor, Vector, add_outer, determinant, dot, inverse, multiply, norm, scale, shear_rate,
+    strain_deviator, sub, trace,
+};
+use crate::state::State;
+
+use super::Solver;
+use super::pair::{Block, Pair, WallRow};
+
+/// What the sweep leaves per particle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Kinematics {
+    /// div v [1/s].
+    pub(super) divergence: f64,
+    /// gamma from the plain gradient [1/s]: the one whose adjoint is the stress force.
+    pub(super) shear: f64,
+    /// R = gamma from the corrected gradient over gamma, 0.8 to 3 [1].
+    pub(super) correction: f64,
+    /// s: bias of the pair form, clamp(gamma^2/gamma_pair^2, 0.5, 2) [1].
+    pub(super) pair_scale: f64,
+    /// Largest speed relative to a neighbour or wall [m/s].
+    pub(super) relative_speed: f64,
+}
+
+/// Sums of one row while it is swept.
+struct Row<const D: usize> {
+    /// sum (v_j - v_i) (x) g, walls twice.
+    gradient: Tensor<D>,
+    /// -sum x_ij (x) g: the identity far from surfaces.
+    moment: Tensor<D>,
+    /// gamma_pair^2 = (D + 2) sum V_j |F| (v_ij . x_ij)^2/r^2.
+    pair_shear2: f64,
+    speed2: f64,
+}
+
+impl<const D: usize> Solver<D> {
+    /// Sweeps all pairs; afterwards `self.kinematics` and the blocks' pairs belong to the state's positions and velocities.
+    pub(super) fn sweep_kinematics(&mut self, state: &State<D>) {
+        let n = state.grains.len();
+        self.volume.resize(n, 0.0);
+        self.update_volumes(state);
+        self.kinematics.resize(n, Kinematics::default());
+        let mut kinematics = std::mem::take(&mut self.kinematics);
+        let mut blocks = std::mem::take(&mut self.lists.blocks);
+        self.workers
+            .blocks(&mut blocks, &mut kinematics, |block, first, out| {
+                self.block_kinematics(state, block, first, out)
+            });
+        self.lists.blocks = blocks;
+        self.kinematics = kinematics;
+    }
+
+    fn block_kinematics(
+        &self,
+        state: &State<D>,
+        block: &mut Block<D>,
+        first: usize,
+        out: &mut [Kinematics],
+    ) {
+        let mut pairs = std::mem::take(&mut block.pairs);
+        let mut wall_rows = std::mem::take(&mut block.wall_rows);
+        pairs.clear();
+        wall_rows.clear();
+        block.pair_ends.clear();
+        for (row, o) in out.iter_mut().enumerate() {
+            let i = first + row;
+            let mut sums = Row {
+                gradient: [[0.0; D]; D],
+                moment: [[0.0; D]; D],
+                pair_shear2: 0.0,
+                speed2: 0.0,
+            };
+            self.fluid_row(state, i, block.row(row), &mut pairs, &mut sums);
+            block.pair_ends.push(pairs.len() as u32);
+            if !block.wall_row(row).is_empty()
+                && let Some(w) = self.wall_row(state, i, row, block.wall_row(row), &mut sums)
+            {
+                wall_rows.push(w);
+            }
+            *o = finish(&sums);
+        }
+        block.pairs = pairs;
+        block.wall_rows = wall_rows;
+    }
+
+    #[inline(always)]
+    fn fluid_row(
+        &self,
+        state: &State<D>,
+        i: usize,
+        near: &[u32],
+        pairs: &mut Vec<Pair<D>>,
+        sums: &mut Row<D>,
+    ) {
+        let grains = &state.grains;
+        let (xi, vi) = (&grains.position[i], &grains.velocity[i]);
+        let support = self.kernel.support();
+        let support2 = support * support;
+        let dissipation = D as f64 + 2.0;
+        for &j in near {
+            let ju = j as usize;
+            let x = self.periodic.difference(xi, &grains.position[ju]);
+            let r2 = dot(&x, &x);
+            if r2 >= support2 || r2 == 0.0 {
+                continue;
+            }
+            let r = r2.sqrt();
+            let vf = self.volume[ju] * self.kernel.f(r);
+            let g = scale(vf, &x);
+            let v = sub(vi, &grains.velocity[ju]);
+            add_outer(&mut sums.gradient, -1.0, &v, &g);
+            add_outer(&mut sums.moment, -1.0, &x, &g);
+            let vx = dot(&v, &x);
+            sums.pair_shear2 -= dissipation * vf * vx * vx / r2;
+            sums.speed2 = sums.speed2.max(dot(&v, &v));
+            // |g| r = |vf| r^2.
+            pairs.push(Pair {
+                j,
+                g,
+                c: 2.0 * dissipation / (-vf * r2),
+            });
+        }
+    }
+
+    fn wall_row(
+        &self,
+        state: &State<D>,
+        i: usize,
+        row: usize,
+        near: &[u32],
+        sums: &mut Row<D>,
+    ) -> Option<WallRow<D>> {
+        let grains = &state.grains;
+        let (xi, vi) = (&grains.position[i], &grains.velocity[i]);
+        let support = self.kernel.support();
+        let dissipation = D as f64 + 2.0;
+        let mut w = WallRow {
+            row: row as u32,
+            s: [0.0; D],
+            drive: 0.0,
+            k: [[[0.0; D]; D]; D],
+            q: [[0.0; D]; D],
+            c: [[0.0; D]; D],
+            cv: [0.0; D],
+        };
+        let mut any = false;
+        for &wall in near {
+            let (x, r) = self.wall_offset(xi, wall);
+            let weight = self.walls.weight[wall as usize];
+            if r >= support || r == 0.0 || weight == 0.0 {
+                continue;
+            }
+            any = true;
+            let vf = self.volume[i] * weight * self.kernel.f(r);
+            let g = scale(vf, &x);
+            let vw = self.walls.velocity[wall as usize];
+            let projection = self.wall_projection(xi, wall, state);
+            let seen =
+                |a: &Vector<D>| -> Vector<D> { projection.map_or(*a, |n| scale(dot(&n, a), &n)) };
+            for k in 0..D {
+                w.s[k] += g[k];
+            }
+            w.drive += dot(&vw, &g);
+            for a in 0..D {
+                for b in 0..D {
+                    let p = projection.map_or(f64::from(u8::from(a == b)), |n| n[a] * n[b]);
+                    for (c, gc) in g.iter().enumerate() {
+                        w.k[a][b][c] += p * gc;
+                    }
+                }
+            }
+            add_outer(&mut w.q, 1.0, &seen(&vw), &g);
+            let pg = seen(&g);
+            let c = 2.0 * dissipation / (-vf * r * r);
+            add_outer(&mut w.c, c, &pg, &pg);
+            let drive = c * dot(&pg, &vw);
+            for k in 0..D {
+                w.cv[k] += drive * pg[k];
+            }
+            let v = seen(&sub(vi, &vw));
+            add_outer(&mut sums.moment, -1.0, &x, &g);
+            let vx = 2.0 * dot(&v, &x);
+            sums.pair_shear2 -= dissipation * vf * vx * vx / (r * r);
+            // Sliding along a free-slip face costs nothing: only the part it sees bounds the step.
+            sums.speed2 = sums.speed2.max(dot(&v, &v));
+        }
+        if !any {
+            return None;
+        }
+        let wall_gradient = w.gradient(vi, true);
+        for a in 0..D {
+            for c in 0..D {
+                sums.gradient[a][c] += wall_gradient[a][c];
+            }
+        }
+        // Divergence takes the whole velocity (a tangential sum over a flat wall vanishes); the strain takes P v.
+        let seen = trace(&wall_gradient);
+        let whole = -2.0 * (dot(vi, &w.s) - w.drive);
+        let share = (whole - seen) / D as f64;
+        for k in 0..D {
+            sums.gradient[k][k] += share;
+        }
+        Some(w)
+    }
+
+    /// x_i - x_wall and its length, nearest image.
+    #[inline(always)]
+    pub(super) fn wall_offset(&self, xi: &Vector<D>, wall: u32) -> (Vector<D>, f64) {
+        let x = self
+            .periodic
+            .difference(xi, &self.walls.position[wall as usize]);
+        let r = norm(&x);
+        (x, r)
+    }
+
+    /// Normal to project on at free slip; `None` at no slip.
+    #[inline(always)]
+    pub(super) fn wall_projection(
+        &self,
+        xi: &Vector<D>,
+        wall: u32,
+        state: &State<D>,
+    ) -> Option<Vector<D>> {
+        let group = self.walls.group[wall as usize] as usize;
+        if !self.walls.groups[group].free_slip {
+            return None;
+        }
+        let gate = group.checked_sub(self.fixed_groups);
+        Some(gate.map_or(self.walls.normal[wall as usize], |g| {
+            self.plates[g].normal_at(xi, state.gates[g].opening)
+        }))
+    }
+}
+
+impl<const D: usize> WallRow<D> {
+    /// Part of the velocity gradient that walls give: -2 (K v - Q); without Q for the linear part.
+    #[inline(always)]
+    pub(super) fn gradient(&self, v: &Vector<D>, with_wall_velocity: bool) -> Tensor<D> {
+        let mut g = [[0.0; D]; D];
+        for a in 0..D {
+            for c in 0..D {
+                let mut s = if with_wall_velocity {
+                    -self.q[a][c]
+                } else {
+                    0.0
+                };
+                for b in 0..D {
+                    s += self.k[a][b][c] * v[b];
+                }
+                g[a][c] = -2.0 * s;
+            }
+        }
+        g
+    }
+
+    /// Force per volume of a stress through walls: 2 K : tau, the adjoint of [`WallRow::gradient`].
+    #[inline(always)]
+    pub(super) fn stress_force(&self, tau: &Tensor<D>) -> Vector<D> {
+        let mut f = [0.0; D];
+        for a in 0..D {
+            for b in 0..D {
+                for c in 0..D {
+                    f[b] += 2.0 * self.k[a][b][c] * tau[a][c];
+                }
+            }
+        }
+        f
+    }
+}
+
+/// From sums to what the rheology needs.
+fn finish<const D: usize>(sums: &Row<D>) -> Kinematics {
+    let shear = shear_rate(&strain_deviator(&sums.gradient));
+    let correction = if shear > 0.0 && determinant(&sums.moment) > 0.15 {
+        let corrected = shear_rate(&strain_deviator(&multiply(
+            &sums.gradient,
+            &inverse(&sums.moment),
+        )));
+        (corrected / shear).clamp(0.8, 3.0)
+    } else {
+        1.0
+    };
+    let pair_scale = if sums.pair_shear2 > 0.0 {
+        (shear * shear / sums.pair_shear2).clamp(0.5, 2.0)
+    } else {
+        1.0
+    };
+    Kinematics {
+        divergence: trace(&sums.gradient),
+        shear,
+        correction,
+        pair_scale,
+        relative_speed: sums.speed2.sqrt(),
+    }
+}

@@ -1,0 +1,177 @@
+//! Neighbour lists with a skin, sorted particles, and the pieces that touch no wall.
+//!
+//! Lists are built from `Grains::listed` (the positions at that moment), so that a restored state rebuilds the same
+//! lists in the same order. They stay valid while nothing has moved more than the skin allows, relative to the mean
+//! motion for particles among themselves (a uniform speed costs nothing) and to walls for wall lists.
+
+use crate::boundary::WallPoints;
+use crate::math::{CHUNK, Vector, Workers, norm, sub};
+use crate::state::Grains;
+
+use super::grid::{Grid, Periodic};
+use super::pair::Block;
+
+/// Neighbour lists of one state.
+#[derive(Debug)]
+pub(super) struct Lists<const D: usize> {
+    /// Rows in chunks of `CHUNK`, with their neighbours and (per step) pair coefficients.
+    pub(super) blocks: Vec<Block<D>>,
+    /// Piece of each particle: connected through lists; `None` if the piece touches a wall.
+    pub(super) pieces: Vec<Option<u32>>,
+    /// Number of pieces that touch no wall.
+    pub(super) free_pieces: usize,
+    /// Radius of the lists: support + skin [m].
+    reach: f64,
+    skin: f64,
+}
+
+impl<const D: usize> Lists<D> {
+    /// Empty lists for a support radius and a skin [m].
+    pub(super) fn new(support: f64, skin: f64) -> Self {
+        Self {
+            blocks: Vec::new(),
+            pieces: Vec::new(),
+            free_pieces: 0,
+            reach: support + skin,
+            skin,
+        }
+    }
+
+    /// Whether particles have moved too far since the lists were built.
+    pub(super) fn outdated(
+        &self,
+        grains: &Grains<D>,
+        periodic: &Periodic<D>,
+        wall_travel: f64,
+        has_walls: bool,
+    ) -> bool {
+        let n = grains.len();
+        if n == 0 {
+            return false;
+        }
+        let mut mean = [0.0; D];
+        for i in 0..n {
+            let d = periodic.difference(&grains.position[i], &grains.listed[i]);
+            for k in 0..D {
+                mean[k] += d[k] / n as f64;
+            }
+        }
+        let (mut relative, mut absolute) = (0.0f64, 0.0f64);
+        for i in 0..n {
+            let d = periodic.difference(&grains.position[i], &grains.listed[i]);
+            relative = relative.max(norm(&sub(&d, &mean)));
+            absolute = absolute.max(norm(&d));
+        }
+        2.0 * relative > self.skin || (has_walls && absolute + wall_travel > self.skin)
+    }
+
+    /// Sorts particles by cell and notes where they are; lists must be built next.
+    pub(super) fn sort(&self, grains: &mut Grains<D>, periodic: &Periodic<D>) {
+        let keep: Vec<u32> = (0..grains.len() as u32)
+            .filter(|&i| !grains.drained[i as usize])
+            .collect();
+        if keep.len() < grains.len() {
+            grains.reorder(&keep);
+        }
+        let grid = Grid::build(&grains.position, self.reach, periodic);
+        grains.reorder(grid.order());
+        grains.listed.clone_from(&grains.position);
+    }
+
+    /// Builds lists from the noted positions.
+    pub(super) fn build(
+        &mut self,
+        grains: &Grains<D>,
+        walls: &WallPoints<D>,
+        periodic: &Periodic<D>,
+        workers: &Workers,
+    ) {
+        let n = grains.len();
+        let x = &grains.listed;
+        let grid = Grid::build(x, self.reach, periodic);
+        let wall_grid = Grid::build(&walls.position, self.reach, periodic);
+        let reach2 = self.reach * self.reach;
+        self.blocks.resize_with(n.div_ceil(CHUNK), Block::default);
+        let mut rows = vec![(); n];
+        workers.blocks(&mut self.blocks, &mut rows, |block, first, part| {
+            block.clear();
+            for i in first..first + part.len() {
+                grid.for_near(&x[i], |j| {
+                    let d = periodic.difference(&x[i], &x[j as usize]);
+                    if j as usize != i && crate::math::dot(&d, &d) < reach2 {
+                        block.neighbours.push(j);
+                    }
+                });
+                wall_grid.for_near(&x[i], |g| {
+                    let d = periodic.difference(&x[i], &walls.position[g as usize]);
+                    if crate::math::dot(&d, &d) < reach2 {
+                        block.walls.push(g);
+                    }
+                });
+                block.end_row();
+            }
+        });
+        self.find_pieces(n);
+    }
+
+    /// Union-find over list pairs: pieces that touch no wall keep their momentum exactly (see `viscous`).
+    fn find_pieces(&mut self, n: usize) {
+        let mut parent: Vec<u32> = (0..n as u32).collect();
+        fn root(parent: &mut [u32], mut i: u32) -> u32 {
+            while parent[i as usize] != i {
+                parent[i as usize] = parent[parent[i as usize] as usize];
+                i = parent[i as usize];
+            }
+            i
+        }
+        let mut touches = vec![false; n];
+        for (c, block) in self.blocks.iter().enumerate() {
+            for row in 0..block.rows() {
+                let i = (c * CHUNK + row) as u32;
+                touches[i as usize] = !block.wall_row(row).is_empty();
+                for &j in block.row(row).iter().filter(|&&j| j < i) {
+                    let (a, b) = (root(&mut parent, i), root(&mut parent, j));
+                    // The smaller index wins: the result does not depend on the order of unions.
+                    parent[a.max(b) as usize] = a.min(b);
+                }
+            }
+        }
+        let mut walled = vec![false; n];
+        for i in 0..n {
+            let r = root(&mut parent, i as u32) as usize;
+            walled[r] |= touches[i];
+        }
+        let mut number = vec![u32::MAX; n];
+        self.free_pieces = 0;
+        self.pieces.clear();
+        for i in 0..n {
+            let r = root(&mut parent, i as u32) as usize;
+            if walled[r] {
+                self.pieces.push(None);
+                continue;
+            }
+            if number[r] == u32::MAX {
+                number[r] = self.free_pieces as u32;
+                self.free_pieces += 1;
+            }
+            self.pieces.push(Some(number[r]));
+        }
+    }
+}
+
+/// Mean of rows, for frames of reference.
+pub(super) fn mean<const D: usize>(rows: &[Vector<D>], weight: &[f64]) -> Vector<D> {
+    let mut sum = [0.0; D];
+    let mut total = 0.0;
+    for (r, w) in rows.iter().zip(weight) {
+        for k in 0..D {
+            sum[k] += w * r[k];
+        }
+        total += w;
+    }
+    if total > 0.0 {
+        sum.map(|s| s / total)
+    } else {
+        sum
+    }
+}

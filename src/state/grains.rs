@@ -1,0 +1,168 @@
+//! Particles as a structure of arrays. One list of fields for reordering and removal, so that none is forgotten.
+
+use serde::{Deserialize, Serialize};
+
+use crate::math::Vector;
+
+/// The particles of a scene. All arrays have the same length.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Grains<const D: usize> {
+    /// Position x [m].
+    #[serde(with = "flat")]
+    pub position: Vec<Vector<D>>,
+    /// Velocity v [m/s].
+    #[serde(with = "flat")]
+    pub velocity: Vec<Vector<D>>,
+    /// Bulk density rho [kg/m^3].
+    pub density: Vec<f64>,
+    /// Mass m, a multiple of a power of two [kg].
+    pub mass: Vec<f64>,
+    /// Shear rate relaxed in time, for the equation of state [1/s].
+    pub relaxed_shear: Vec<f64>,
+    /// Velocity change of the last viscous solve over its step: its next first guess [m/s^2].
+    #[serde(with = "flat")]
+    pub viscous_acceleration: Vec<Vector<D>>,
+    /// Position when the neighbour lists were built [m].
+    #[serde(with = "flat")]
+    pub listed: Vec<Vector<D>>,
+    /// Persistent number, for messages.
+    pub id: Vec<u64>,
+    /// Phase: index of the material.
+    pub phase: Vec<u8>,
+    /// Taken by an outflow and counted; removed when lists are rebuilt.
+    pub drained: Vec<bool>,
+}
+
+macro_rules! for_each_field {
+    ($self:ident, $f:ident, $($extra:tt)*) => {
+        $f(&mut $self.position, $($extra)*);
+        $f(&mut $self.velocity, $($extra)*);
+        $f(&mut $self.density, $($extra)*);
+        $f(&mut $self.mass, $($extra)*);
+        $f(&mut $self.relaxed_shear, $($extra)*);
+        $f(&mut $self.viscous_acceleration, $($extra)*);
+        $f(&mut $self.listed, $($extra)*);
+        $f(&mut $self.id, $($extra)*);
+        $f(&mut $self.phase, $($extra)*);
+        $f(&mut $self.drained, $($extra)*);
+    };
+}
+
+impl<const D: usize> Grains<D> {
+    /// Number of particles, drained ones included until they are removed.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// Adds a particle at rest in its own frame.
+    pub fn push(
+        &mut self,
+        id: u64,
+        phase: u8,
+        position: Vector<D>,
+        velocity: Vector<D>,
+        mass: f64,
+        density: f64,
+    ) {
+        self.position.push(position);
+        self.velocity.push(velocity);
+        self.density.push(density);
+        self.mass.push(mass);
+        self.relaxed_shear.push(0.0);
+        self.viscous_acceleration.push([0.0; D]);
+        self.listed.push(position);
+        self.id.push(id);
+        self.phase.push(phase);
+        self.drained.push(false);
+    }
+
+    /// Keeps the particles named by `order`, in that order.
+    pub fn reorder(&mut self, order: &[u32]) {
+        fn pick<T: Copy>(field: &mut Vec<T>, order: &[u32]) {
+            *field = order.iter().map(|&i| field[i as usize]).collect();
+        }
+        for_each_field!(self, pick, order);
+    }
+
+    /// Whether all arrays have the same length and every number that must be is finite and positive.
+    #[must_use]
+    pub fn is_consistent(&self) -> bool {
+        let n = self.len();
+        let lengths = [
+            self.velocity.len(),
+            self.density.len(),
+            self.mass.len(),
+            self.relaxed_shear.len(),
+            self.viscous_acceleration.len(),
+            self.listed.len(),
+            self.id.len(),
+            self.phase.len(),
+            self.drained.len(),
+        ];
+        lengths.iter().all(|&l| l == n)
+            && self
+                .density
+                .iter()
+                .chain(&self.mass)
+                .all(|v| v.is_finite() && *v > 0.0)
+            && self
+                .position
+                .iter()
+                .chain(&self.velocity)
+                .flatten()
+                .all(|v| v.is_finite())
+    }
+
+    /// Sum of masses present [kg]; exact, whatever the order.
+    #[must_use]
+    pub fn present_mass(&self) -> f64 {
+        self.mass
+            .iter()
+            .zip(&self.drained)
+            .filter(|(_, d)| !**d)
+            .map(|(m, _)| m)
+            .sum()
+    }
+}
+
+/// Arrays of vectors as flat arrays of numbers, for serde.
+pub mod flat {
+    use super::Vector;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    /// Writes the components one after the other.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<S: Serializer, const D: usize>(
+        rows: &[Vector<D>],
+        s: S,
+    ) -> Result<S::Ok, S::Error> {
+        rows.as_flattened().serialize(s)
+    }
+
+    /// Reads them back.
+    ///
+    /// # Errors
+    /// A length that is no multiple of D.
+    pub fn deserialize<'de, De: Deserializer<'de>, const D: usize>(
+        d: De,
+    ) -> Result<Vec<Vector<D>>, De::Error> {
+        let values = Vec::<f64>::deserialize(d)?;
+        let (rows, rest) = values.as_chunks::<D>();
+        if rest.is_empty() {
+            Ok(rows.to_vec())
+        } else {
+            Err(De::Error::custom(
+                "array length is no multiple of the dimension",
+            ))
+        }
+    }
+}
