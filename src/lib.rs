@@ -4,6 +4,8 @@
 pub mod boundary;
 #[cfg(feature = "bus")]
 pub mod bus;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod component;
 pub mod fmi;
 pub mod gauge;

@@ -1,1 +1,5 @@
-fn main() {}
+//! The program `sandgate`: hands over to [`sandgate::cli::main`] and returns its exit code; nothing else.
+
+fn main() -> std::process::ExitCode {
+    sandgate::cli::main()
+}

@@ -1,0 +1,86 @@
+//! What can go wrong in the program, and the exit code of each. Messages say what was found and what to do.
+
+use std::path::PathBuf;
+
+use crate::component;
+use crate::fmi;
+use crate::record::RecordError;
+use crate::scene::SceneErrors;
+
+/// The exit codes, as `--help` shows them. [`CliError::exit_code`] is the same table in code.
+pub(super) const EXIT_CODES: &str = "\
+Exit codes:
+  0    done
+  1    a defect of this program: a call that should not have been made was refused
+  2    wrong use of the command line
+  3    the scene was refused or cannot be built
+  4    a step failed; what was computed before it is kept
+  5    a file could not be read or written, or a saved state does not fit
+  130  stopped by Ctrl-C, after saving";
+
+/// Errors of the program.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// The arguments contradict each other or what is on disk.
+    #[error("error: {0}")]
+    Usage(String),
+    /// The scene file was refused; lists every problem.
+    #[error("{0}")]
+    Scene(#[from] SceneErrors),
+    /// The component refused a call or a step failed.
+    #[error("error: {0}")]
+    Component(#[from] component::Error),
+    /// The FMU could not be packed.
+    #[error("error: {0}")]
+    Fmu(#[from] fmi::Error),
+    /// The log cannot be written, and the scene requires it.
+    #[error("error: {0}")]
+    Log(#[from] RecordError),
+    /// A file could not be read or written.
+    #[error("error: cannot {action} {}: {source}; {remedy}", path.display())]
+    File {
+        /// What was tried, as a verb phrase.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// A file is there but does not hold what it should.
+    #[error("error: {}: {problem}; {remedy}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Ctrl-C: everything is saved; the text says how to go on.
+    #[error("{0}")]
+    Interrupted(String),
+    /// Nobody reads our output any more: not an error.
+    #[error("the reader of the output has gone")]
+    ReaderGone,
+}
+
+impl CliError {
+    /// The exit code, 0 to 255.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Usage(_) => 2,
+            Self::Scene(_) => 3,
+            Self::Component(error) | Self::Fmu(fmi::Error::Component(error)) => {
+                error.status().exit_code
+            }
+            Self::Fmu(fmi::Error::SceneTooLong { .. }) => 3,
+            Self::Fmu(_) => 5,
+            Self::Log(_) | Self::File { .. } | Self::Content { .. } => 5,
+            Self::Interrupted(_) => 130,
+            Self::ReaderGone => 0,
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! What a scene holds and what it leaves out, for people.
+
+use crate::component::Component;
+use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
+use crate::shape::Shape;
+
+/// Particles, walls, devices, gauges and what is not used.
+pub(super) fn describe(scene: &Scene, component: &Component) -> String {
+    let view = component.particles();
+    let mut text = format!("{}: {}\n", scene.name, scene.title);
+    let width = match scene.dimension {
+        Dimension::Two => format!("planar, {} m wide", scene.domain.width),
+        Dimension::Three => "in space".to_owned(),
+    };
+    text.push_str(&format!(
+        "particles  {} of spacing {} m, {width}; mass {} kg; {} wall and gate particles\n",
+        view.position.len(),
+        scene.numerics.spacing,
+        component.ledger().initial,
+        component.wall_points().len(),
+    ));
+    for body in &scene.bodies {
+        let inside = |p: &&[f32; 3]| contains(&body.shape, p.map(f64::from));
+        text.push_str(&format!(
+            "  body     {}: {} particles of {}\n",
+            body.name,
+            view.position.iter().filter(inside).count(),
+            scene.materials[body.material].name,
+        ));
+    }
+    for line in parts(scene) {
+        text.push_str(&format!("  {line}\n"));
+    }
+    text.push_str(&format!("left out   {}\n", left_out(scene).join("; ")));
+    text
+}
+
+/// Walls, devices and gauges, a line each.
+fn parts(scene: &Scene) -> Vec<String> {
+    let mut lines = Vec::new();
+    for wall in &scene.walls {
+        let shape = match &wall.geometry {
+            WallGeometry::Polyline { points, closed } => {
+                let kind = if *closed { "closed chain" } else { "chain" };
+                format!("{kind} of {} points", points.len())
+            }
+            WallGeometry::Box { .. } => "box".to_owned(),
+            WallGeometry::Plane { .. } => "plane".to_owned(),
+        };
+        lines.push(format!(
+            "wall     {}: {shape}, {}",
+            wall.name,
+            slip(wall.slip)
+        ));
+    }
+    for gate in &scene.gates {
+        lines.push(format!(
+            "gate     {}: opening {} at the start, at most {} m/s, {}",
+            gate.name,
+            gate.start,
+            gate.max_speed,
+            slip(gate.slip)
+        ));
+    }
+    for inflow in &scene.inflows {
+        lines.push(format!(
+            "inflow   {}: {} kg/s at the start, at most {} kg/s of {}",
+            inflow.name, inflow.rate, inflow.max_rate, scene.materials[inflow.material].name
+        ));
+    }
+    for outflow in &scene.outflows {
+        lines.push(format!("outflow  {}", outflow.name));
+    }
+    for gauge in &scene.gauges {
+        lines.push(format!(
+            "gauge    {}: {}",
+            gauge.name,
+            gauge_kind(scene, &gauge.kind)
+        ));
+    }
+    lines
+}
+
+fn slip(slip: Slip) -> &'static str {
+    match slip {
+        Slip::NoSlip => "no slip",
+        Slip::FreeSlip => "free slip",
+    }
+}
+
+fn gauge_kind(scene: &Scene, kind: &GaugeKind) -> String {
+    match kind {
+        GaugeKind::Depth { .. } => "depth at a place".to_owned(),
+        GaugeKind::Profile { count, .. } => format!("depth at {count} places"),
+        GaugeKind::Discharge { .. } => "discharge through a section".to_owned(),
+        GaugeKind::Force { on } => match on {
+            ForceTarget::Wall(wall) => format!("force on wall {}", scene.walls[*wall].name),
+            ForceTarget::Gate(gate) => format!("force on gate {}", scene.gates[*gate].name),
+        },
+        GaugeKind::Pressure { .. } => "pressure at a point".to_owned(),
+        GaugeKind::Front { .. } => "front position".to_owned(),
+    }
+}
+
+/// What the scene does not use; none of it is computed, stored or allocated.
+fn left_out(scene: &Scene) -> Vec<&'static str> {
+    let domain = &scene.domain;
+    let numerics = &scene.numerics;
+    let unused = [
+        (scene.dimension == Dimension::Two, "the third dimension"),
+        (scene.materials.len() < 2, "further phases (one material)"),
+        (domain.periodic == [false; 3], "periodic sides"),
+        (scene.gates.is_empty(), "gates"),
+        (scene.inflows.is_empty(), "inflows"),
+        (scene.outflows.is_empty(), "outflows"),
+        (scene.gauges.is_empty(), "gauges"),
+        (scene.schedules.is_empty(), "input schedules"),
+        (numerics.density_diffusion == 0.0, "density diffusion"),
+        (numerics.artificial_viscosity == 0.0, "artificial viscosity"),
+        (numerics.pair_viscosity_share == 0.0, "pair viscosity"),
+        (
+            scene.log.particles_every == 0.0,
+            "particle snapshots in the log",
+        ),
+    ];
+    let list: Vec<_> = unused
+        .iter()
+        .filter(|(yes, _)| *yes)
+        .map(|(_, what)| *what)
+        .collect();
+    if list.is_empty() {
+        vec!["nothing"]
+    } else {
+        list
+    }
+}
+
+/// Whether a point lies in a shape.
+fn contains(shape: &Shape, [x, y, z]: [f64; 3]) -> bool {
+    match shape {
+        Shape::Box { lower, upper } => {
+            let within = |axis: usize, v: f64| lower[axis] <= v && v <= upper[axis];
+            // The third axis of a planar box has no extent and holds every point.
+            within(0, x) && within(1, y) && (lower[2] >= upper[2] || within(2, z))
+        }
+        Shape::Polygon { points } => {
+            // Crossings of a ray towards +x: an odd number means inside.
+            let next = points.iter().cycle().skip(1);
+            let crossings = points.iter().zip(next).filter(|(a, b)| {
+                (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+            });
+            crossings.count() % 2 == 1
+        }
+        Shape::Column {
+            base,
+            radius,
+            height,
+        } => {
+            (x - base[0]).hypot(y - base[1]) <= *radius && (0.0..=*height).contains(&(z - base[2]))
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The program `sandgate`: what was typed becomes a plan, the plan is carried out through
+//! [`crate::component::Component`] like any other adapter does it.
+//!
+//! One subcommand a file, each with an `Args` (as typed, clap) and a `run(&Args)`. Printing is allowed here and
+//! nowhere else in the library. No physics, no list of variables and no rule about lifecycles lives here.
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "this is the one layer that talks to a terminal"
+)]
+
+mod clock;
+mod error;
+mod fmu;
+mod info;
+mod quantity;
+mod run;
+mod stop;
+
+use std::io::Write as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use error::CliError;
+
+use crate::scene::Scene;
+
+/// Granular flow (SPH) as a co-simulation component.
+#[derive(Debug, Parser)]
+#[command(name = "sandgate", version, about, after_help = error::EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// The subcommands; each is one file of this folder.
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a case to its end and leave a log, figures, a table and a picture
+    Run(run::Args),
+    /// Say what a case holds, what bounds its steps, what a run costs and what it leaves out
+    Info(info::Args),
+    /// Pack a case into an FMU (FMI 2.0 or 3.0, co-simulation)
+    Fmu(fmu::Args),
+}
+
+/// Reads the command line, does what it says and returns the exit code (see `sandgate --help`).
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version come this way too, with exit code 0. Nothing can be done if even this cannot be printed.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    match dispatch(&cli.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(CliError::ReaderGone) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn dispatch(command: &Command) -> Result<(), CliError> {
+    match command {
+        Command::Run(args) => run::run(args),
+        Command::Info(args) => info::run(args),
+        Command::Fmu(args) => fmu::run(args),
+    }
+}
+
+/// Reads and checks a scene file.
+///
+/// # Errors
+/// [`CliError::File`] if there is no readable file, [`CliError::Scene`] with every problem of the scene.
+fn load_scene(path: &Path) -> Result<Scene, CliError> {
+    std::fs::File::open(path).map_err(|source| CliError::File {
+        action: "open scene file",
+        path: path.to_path_buf(),
+        source,
+        remedy: "give the path of a scene file, for example cases/silo_gate.toml",
+    })?;
+    Ok(crate::scene::load(path)?)
+}
+
+/// Prints text to standard output; a reader that has gone away (`| head`) ends the program quietly.
+fn say(text: &str) -> Result<(), CliError> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.write_all(b"\n"))
+        .and_then(|()| out.flush())
+        .map_err(|source| match source.kind() {
+            std::io::ErrorKind::BrokenPipe => CliError::ReaderGone,
+            _ => CliError::File {
+                action: "write to",
+                path: "standard output".into(),
+                source,
+                remedy: "see where the output of this command goes",
+            },
+        })
+}

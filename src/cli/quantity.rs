@@ -1,0 +1,36 @@
+//! Values with units on the command line: "2 s", "5 ms" or plain SI numbers, as in scene files.
+
+use crate::units::{Quantity, parse};
+
+/// A time span greater than 0 [s].
+///
+/// # Errors
+/// What was found and what is allowed, for clap's message.
+pub(super) fn positive_time(text: &str) -> Result<f64, String> {
+    let seconds = parse(text, Quantity::Time).map_err(|error| error.to_string())?;
+    if seconds > 0.0 {
+        Ok(seconds)
+    } else {
+        Err(format!("found {seconds} s, allowed more than 0 s"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::positive_time;
+
+    #[test]
+    fn durations_take_units_and_must_be_positive() {
+        assert_eq!(positive_time("20 ms"), Ok(0.02));
+        assert_eq!(positive_time("1.5"), Ok(1.5));
+        for (text, reason) in [
+            ("0", "more than 0 s"),
+            ("-1 s", "more than 0 s"),
+            ("2 mm", "a length"),
+            ("nan", "not a decimal number"),
+        ] {
+            let message = positive_time(text).unwrap_err();
+            assert!(message.contains(reason), "{text}: {message}");
+        }
+    }
+}

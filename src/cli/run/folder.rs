@@ -1,0 +1,182 @@
+//! The folder a run writes to, and the rule that nothing of an earlier run is overwritten unasked.
+//!
+//! - without `--out`: `out/<case>`, or `out/<case>-2`, `-3`, ... if that is taken;
+//! - `--out DIR`: new or empty, or with `--force` the folder of an earlier `sandgate run`, whose files are removed;
+//! - `--resume DIR/checkpoint.state`: DIR itself goes on, with its table continued and a new log segment.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::cli::CliError;
+
+/// What marks a folder as made by `sandgate run`, in `summary.json`.
+pub(super) const MADE_BY: &str = "sandgate run";
+
+/// An output folder that exists and is ours to write to.
+#[derive(Debug)]
+pub(super) struct Folder {
+    path: PathBuf,
+    /// The summary of the earlier part of the same run, if this run goes on with it.
+    pub(super) earlier: Option<Value>,
+}
+
+impl Folder {
+    /// Makes the first free one of `out/<case>`, `out/<case>-2`, ...
+    ///
+    /// # Errors
+    /// [`CliError::File`] if no folder can be made.
+    pub(super) fn next_free(case: &str) -> Result<Self, CliError> {
+        std::fs::create_dir_all("out").map_err(|e| cannot_make(Path::new("out"), e))?;
+        let mut number = 1;
+        loop {
+            let path = match number {
+                1 => Path::new("out").join(case),
+                n => Path::new("out").join(format!("{case}-{n}")),
+            };
+            match std::fs::create_dir(&path) {
+                Ok(()) => return Ok(Self::new(path)),
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => number += 1,
+                Err(e) => return Err(cannot_make(&path, e)),
+            }
+        }
+    }
+
+    /// Takes the folder the user named.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] if something is in it that would be overwritten, [`CliError::File`].
+    pub(super) fn named(path: &Path, force: bool) -> Result<Self, CliError> {
+        std::fs::create_dir_all(path).map_err(|e| cannot_make(path, e))?;
+        let files = names(path)?;
+        if files.is_empty() {
+            return Ok(Self::new(path.to_path_buf()));
+        }
+        let shown = path.display();
+        match (earlier_summary(path), force) {
+            (None, _) => Err(CliError::Usage(format!(
+                "{shown} is not empty and was not made by `sandgate run` (found {}); give a new or an empty folder",
+                files[0]
+            ))),
+            (Some(_), false) => Err(CliError::Usage(format!(
+                "{shown} holds an earlier run; give another folder, add --force to replace that run, \
+                 or go on with it by --resume {shown}/checkpoint.state"
+            ))),
+            (Some(_), true) => {
+                for name in files.iter().filter(|name| is_ours(name)) {
+                    let file = path.join(name);
+                    std::fs::remove_file(&file).map_err(|source| CliError::File {
+                        action: "remove",
+                        path: file,
+                        source,
+                        remedy: "remove it by hand or give another folder with --out",
+                    })?;
+                }
+                Ok(Self::new(path.to_path_buf()))
+            }
+        }
+    }
+
+    /// The folder a checkpoint lies in, if `sandgate run` made it.
+    pub(super) fn of_checkpoint(file: &Path) -> Option<Self> {
+        let parent = match file.parent()? {
+            p if p.as_os_str().is_empty() => Path::new("."),
+            p => p,
+        };
+        let earlier = Some(earlier_summary(parent)?);
+        Some(Self {
+            path: parent.to_path_buf(),
+            earlier,
+        })
+    }
+
+    fn new(path: PathBuf) -> Self {
+        Self {
+            path,
+            earlier: None,
+        }
+    }
+
+    /// The folder.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// A file in it.
+    pub(super) fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// Name of the next log segment: `run.mcap`, then `run-2.mcap`, ...
+    pub(super) fn next_log(&self) -> String {
+        (1_u32..)
+            .map(|n| match n {
+                1 => "run.mcap".to_owned(),
+                n => format!("run-{n}.mcap"),
+            })
+            .find(|name| !self.file(name).exists() && !self.file(&format!("{name}.part")).exists())
+            .unwrap_or_else(|| "run.mcap".to_owned())
+    }
+
+    /// Writes a whole file in one go: readers see the old one or the new one, never half of it.
+    ///
+    /// # Errors
+    /// [`CliError::File`].
+    pub(super) fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
+        let (fresh, path) = (self.file(&format!("{name}.part")), self.file(name));
+        std::fs::write(&fresh, bytes)
+            .and_then(|()| std::fs::rename(&fresh, &path))
+            .map_err(|source| CliError::File {
+                action: "write",
+                path,
+                source,
+                remedy: "make room or choose another folder with --out",
+            })
+    }
+}
+
+/// Files that a run makes; nothing else in a folder is ever touched.
+fn is_ours(name: &str) -> bool {
+    let whole = name.strip_suffix(".part").unwrap_or(name);
+    matches!(
+        whole,
+        "summary.json" | "gauges.csv" | "gauges.svg" | "checkpoint.state"
+    ) || (whole.starts_with("run") && whole.ends_with(".mcap"))
+}
+
+fn earlier_summary(folder: &Path) -> Option<Value> {
+    let text = std::fs::read_to_string(folder.join("summary.json")).ok()?;
+    let summary: Value = serde_json::from_str(&text).ok()?;
+    (summary.get("made_by")?.as_str()? == MADE_BY).then_some(summary)
+}
+
+fn names(folder: &Path) -> Result<Vec<String>, CliError> {
+    let read = |source| CliError::File {
+        action: "list",
+        path: folder.to_path_buf(),
+        source,
+        remedy: "give another folder with --out",
+    };
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(read)? {
+        names.push(
+            entry
+                .map_err(read)?
+                .file_name()
+                .to_string_lossy()
+                .into_owned(),
+        );
+    }
+    names.sort();
+    Ok(names)
+}
+
+fn cannot_make(path: &Path, source: std::io::Error) -> CliError {
+    CliError::File {
+        action: "make folder",
+        path: path.to_path_buf(),
+        source,
+        remedy: "give a folder you may write to with --out",
+    }
+}

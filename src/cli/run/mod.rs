@@ -1,0 +1,126 @@
+//! `sandgate run CASE`: the scene's component from start to end, stepped at the scene's communication step with
+//! the scene's schedules as inputs.
+//!
+//! `session` steps, `log` records, `folder` decides where files go, `series` keeps scalars over time, `plot` draws them,
+//! `summary` holds the final figures, `progress` shows how far it is. What the component computes does not depend
+//! on anything here but communication steps and inputs.
+
+mod folder;
+mod grid;
+mod log;
+mod plot;
+mod progress;
+mod series;
+mod session;
+mod summary;
+
+use std::path::PathBuf;
+
+use super::{CliError, load_scene, quantity, stop};
+use session::Session;
+
+pub(super) use grid::next as next_point;
+pub(super) use session::scheduled;
+pub(super) use summary::bound_name;
+
+/// What may be typed after `sandgate run`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(super) struct Args {
+    /// The scene file, for example cases/silo_gate.toml
+    pub(super) case: PathBuf,
+    /// End at this simulated time, "2 s" or plain seconds [default: the scene's run.until]
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time)]
+    until: Option<f64>,
+    /// Folder for the results [default: out/<case>, or the next free out/<case>-2, -3, ...]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace the results of an earlier run in the folder given with --out
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Threads to compute with; 0 means all cores; results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
+    threads: u16,
+    /// Communication step, "10 ms" or plain seconds [default: the scene's run.step]
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time)]
+    step: Option<f64>,
+    /// Save checkpoint.state every so much simulated time (it is saved at the end and at Ctrl-C in any case)
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time)]
+    checkpoint_every: Option<f64>,
+    /// Go on from a saved state, and in its folder unless --out names another
+    #[arg(long, value_name = "FILE", conflicts_with = "force")]
+    resume: Option<PathBuf>,
+    /// Write no run.mcap
+    #[arg(long)]
+    no_log: bool,
+}
+
+const AFTER_HELP: &str = "\
+The folder then holds:
+  run.mcap          everything that went in and out, and particles (Foxglove, Rerun); a resumed run adds run-2.mcap, ...
+  gauges.csv        time and all scalar inputs and outputs, a row each communication point, SI, exact decimals
+  gauges.svg        gauges, devices and inputs over time
+  summary.json      every final figure, extremes, steps, CPU and wall time, mass account, state hash
+  checkpoint.state  the state to go on from
+
+Ctrl-C finishes the communication step, saves all of these and prints the command to go on with.
+A resumed run ends with the same bits as an unbroken one.";
+
+/// Carries out `sandgate run`.
+///
+/// # Errors
+/// [`CliError`]; what was computed before a failed step or Ctrl-C is saved.
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    let scene = load_scene(&args.case)?;
+    let plan = session::Plan {
+        until: args.until.unwrap_or(scene.run.until),
+        step: args.step.unwrap_or(scene.run.step),
+        threads: usize::from(args.threads),
+        checkpoint_every: args.checkpoint_every,
+        go_on: go_on_command(args),
+        log: !args.no_log,
+    };
+    let stop = stop::on_interrupt()?;
+    let resumed = match &args.resume {
+        Some(file) => Some(std::fs::read(file).map_err(|source| CliError::File {
+            action: "read saved state",
+            path: file.clone(),
+            source,
+            remedy: "give the checkpoint.state of an earlier run",
+        })?),
+        None => None,
+    };
+    let component = session::ready(&scene, resumed.as_deref(), &plan)?;
+    let continued = match (&args.resume, &args.out) {
+        (Some(file), None) => folder::Folder::of_checkpoint(file),
+        _ => None,
+    };
+    let folder = match (continued, &args.out) {
+        (Some(folder), _) => folder,
+        (None, Some(path)) => folder::Folder::named(path, args.force)?,
+        (None, None) => folder::Folder::next_free(&scene.name)?,
+    };
+    let mut session = Session::open(plan, component, folder, &args.case)?;
+    let outcome = session.advance(&stop);
+    session.close(outcome)
+}
+
+/// The command that goes on with this run, without the checkpoint's path.
+fn go_on_command(args: &Args) -> String {
+    let mut command = format!("sandgate run {}", args.case.display());
+    let mut option = |name: &str, value: Option<f64>| {
+        if let Some(value) = value {
+            command.push_str(&format!(" {name} {value}"));
+        }
+    };
+    option("--until", args.until);
+    option("--step", args.step);
+    option("--checkpoint-every", args.checkpoint_every);
+    if args.threads > 0 {
+        command.push_str(&format!(" --threads {}", args.threads));
+    }
+    if args.no_log {
+        command.push_str(" --no-log");
+    }
+    command
+}

@@ -1,0 +1,186 @@
+//! `gauges.svg`: gauges, devices and inputs over time, one panel a unit, so that a run can be judged at a glance.
+//!
+//! Elements of profiles, counts and the solver's own figures are left to `gauges.csv`. Samples whose gauge says
+//! they are not valid (empty, outside, blocked) are gaps in the curve.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::series::{Column, Series};
+use crate::component::ValueKind;
+
+const WIDTH: u32 = 1100;
+const PANEL: u32 = 210;
+const TITLE: u32 = 44;
+const LEGEND: u32 = 280;
+/// More curves than this in one panel cannot be told apart.
+const MOST_CURVES: usize = 6;
+/// Okabe and Ito's colours: also told apart by colour-blind readers.
+const COLOURS: [RGBColor; MOST_CURVES] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+];
+
+type Failed = Box<dyn std::error::Error>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Draws the picture.
+///
+/// # Errors
+/// What the drawing library says; it draws into memory, so there is no file to fail on.
+pub(super) fn svg(title: &str, series: &Series) -> Result<String, Failed> {
+    let panels = panels(&series.columns);
+    let mut picture = String::new();
+    {
+        let height = TITLE + PANEL * u32::try_from(panels.len().max(1))?;
+        let root = SVGBackend::with_string(&mut picture, (WIDTH, height)).into_drawing_area();
+        root.fill(&WHITE)?;
+        let (head, body) = root.split_vertically(TITLE);
+        head.draw(&Text::new(title.to_owned(), (16, 14), ("sans-serif", 20)))?;
+        if panels.is_empty() {
+            let text = "this case has no gauges, gates, inflows or outflows to draw";
+            body.draw(&Text::new(text, (16, 40), ("sans-serif", 15)))?;
+        }
+        let areas = body.split_evenly((panels.len().max(1), 1));
+        for (panel, area) in panels.iter().zip(&areas) {
+            draw_panel(area, panel, series)?;
+        }
+        root.present()?;
+    }
+    Ok(picture)
+}
+
+/// Curves that share an axis.
+struct Panel<'a> {
+    unit: &'static str,
+    factor: f64,
+    curves: Vec<&'a Column>,
+}
+
+/// Real scalars of gauges and devices by unit, in order of first appearance.
+fn panels(columns: &[Column]) -> Vec<Panel<'_>> {
+    let mut panels: Vec<Panel> = Vec::new();
+    let shown = columns.iter().filter(|c| {
+        let device = ["gauge.", "gate.", "inflow.", "outflow."];
+        c.kind == ValueKind::Real
+            && !c.is_element
+            && device.iter().any(|prefix| c.name.starts_with(prefix))
+    });
+    for column in shown {
+        let (unit, factor) = column.display_unit.unwrap_or((column.unit, 1.0));
+        let open = panels
+            .iter_mut()
+            .find(|p| p.unit == unit && p.curves.len() < MOST_CURVES);
+        match open {
+            Some(panel) => panel.curves.push(column),
+            None => panels.push(Panel {
+                unit,
+                factor,
+                curves: vec![column],
+            }),
+        }
+    }
+    panels
+}
+
+fn draw_panel(area: &Area, panel: &Panel, series: &Series) -> Result<(), Failed> {
+    let (plot, legend) = area.split_horizontally(WIDTH - LEGEND);
+    let start = series.time.first().copied().unwrap_or(0.0);
+    let end = series.time.last().copied().unwrap_or(1.0);
+    let mut chart = ChartBuilder::on(&plot)
+        .margin(8)
+        .x_label_area_size(38)
+        .y_label_area_size(84)
+        .build_cartesian_2d(start..end.max(start + 1e-9), limits(panel, series))?;
+    let y_title = match panel.unit {
+        "1" => "share [1]".to_owned(),
+        unit => format!("[{unit}]"),
+    };
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .bold_line_style(RGBColor(225, 225, 225))
+        .x_desc("time [s]")
+        .y_desc(y_title)
+        .y_labels(6)
+        .y_label_formatter(&|y| short(*y))
+        .x_label_formatter(&|x| short(*x))
+        .label_style(("sans-serif", 12))
+        .axis_desc_style(("sans-serif", 13))
+        .draw()?;
+    for (index, column) in panel.curves.iter().enumerate() {
+        let style = COLOURS[index % MOST_CURVES].stroke_width(if column.is_input { 1 } else { 2 });
+        for piece in pieces(column, panel.factor, series) {
+            chart.draw_series(LineSeries::new(piece, style))?;
+        }
+        let y = 22 + 22 * i32::try_from(index)?;
+        let line = vec![(6, y + 6), (30, y + 6)];
+        legend.draw(&PathElement::new(line, style))?;
+        let suffix = if column.is_input { " (input)" } else { "" };
+        let text = format!("{}{suffix}", column.name);
+        legend.draw(&Text::new(text, (38, y), ("sans-serif", 13)))?;
+    }
+    Ok(())
+}
+
+/// Smallest and largest valid value of the panel with a margin, never an empty range.
+fn limits(panel: &Panel, series: &Series) -> std::ops::Range<f64> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for column in &panel.curves {
+        for (_, y) in pieces(column, panel.factor, series).into_iter().flatten() {
+            low = low.min(y);
+            high = high.max(y);
+        }
+    }
+    if !low.is_finite() || !high.is_finite() {
+        return 0.0..1.0;
+    }
+    let margin = match high - low {
+        0.0 => high.abs().max(1.0) * 0.05,
+        range => range * 0.05,
+    };
+    low - margin..high + margin
+}
+
+/// The curve as unbroken pieces of valid samples; inputs hold over the step that ends at their sample.
+fn pieces(column: &Column, factor: f64, series: &Series) -> Vec<Vec<(f64, f64)>> {
+    let gauge = column.name.rsplit_once('.').map_or("", |(gauge, _)| gauge);
+    let flag = format!("{gauge}.validity");
+    let validity = series.columns.iter().find(|c| c.name == flag);
+    let mut pieces = vec![Vec::new()];
+    let mut before = series.time.first().copied().unwrap_or(0.0);
+    for (row, (&time, &value)) in series.time.iter().zip(&column.values).enumerate() {
+        let valid = validity.is_none_or(|v| v.values[row] == 0.0) && value.is_finite();
+        match (valid, pieces.last_mut()) {
+            (true, Some(piece)) => {
+                if column.is_input {
+                    piece.push((before, value * factor));
+                }
+                piece.push((time, value * factor));
+            }
+            _ => pieces.push(Vec::new()),
+        }
+        before = time;
+    }
+    pieces.retain(|piece| !piece.is_empty());
+    pieces
+}
+
+/// A number for an axis: four digits, exponents only where they help.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-3..1e5).contains(&size) {
+        return format!("{value:.2e}");
+    }
+    let text = format!("{value:.4}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
+}

@@ -1,0 +1,95 @@
+//! What a run shows while it runs: a bar with the time left on a terminal, a plain line now and then elsewhere.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::component::Component;
+
+/// Parts a bar is divided into; indicatif counts in whole numbers.
+const PARTS: f64 = 1e6;
+
+/// How often a plain line is printed when nobody watches a terminal.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+
+/// Progress of a run from one simulated time to another.
+pub(super) struct Progress {
+    name: String,
+    from: f64,
+    until: f64,
+    started: Instant,
+    last_line: Instant,
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// Starts at simulated time `from` [s]; standard error decides between bar and lines.
+    pub(super) fn start(name: &str, from: f64, until: f64) -> Self {
+        let bar = std::io::IsTerminal::is_terminal(&std::io::stderr()).then(|| {
+            let bar =
+                ProgressBar::with_draw_target(Some(PARTS as u64), ProgressDrawTarget::stderr());
+            if let Ok(style) =
+                ProgressStyle::with_template("{prefix} {wide_bar} {percent:>3} %  {msg}")
+            {
+                bar.set_style(style);
+            }
+            bar.set_prefix(name.to_owned());
+            bar
+        });
+        let now = Instant::now();
+        Self {
+            name: name.to_owned(),
+            from,
+            until,
+            started: now,
+            last_line: now,
+            bar,
+        }
+    }
+
+    /// Shows where the component is.
+    pub(super) fn show(&mut self, component: &Component) {
+        match &self.bar {
+            Some(bar) => {
+                let share = (component.time() - self.from) / (self.until - self.from);
+                bar.set_position((share.clamp(0.0, 1.0) * PARTS) as u64);
+                bar.set_message(self.text(component));
+            }
+            None if self.last_line.elapsed() >= LINE_EVERY => {
+                self.last_line = Instant::now();
+                eprintln!("{}  {}", self.name, self.text(component));
+            }
+            None => {}
+        }
+    }
+
+    /// Takes the bar away; the summary follows.
+    pub(super) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn text(&self, component: &Component) -> String {
+        let ledger = component.ledger();
+        let wall = self.started.elapsed().as_secs_f64();
+        let done = component.time() - self.from;
+        let left = if done > 0.0 {
+            let seconds = wall / done * (self.until - component.time()).max(0.0);
+            indicatif::HumanDuration(Duration::from_secs_f64(seconds.ceil())).to_string()
+        } else {
+            "unknown".to_owned()
+        };
+        format!(
+            "t = {:.3} of {} s  ETA {left}  {:.3} x real time  {} particles  mass in {:.4} out {:.4} present {:.4} error {} kg",
+            component.time(),
+            self.until,
+            done / wall.max(1e-9),
+            component.statistics().particles,
+            ledger.inflow,
+            ledger.outflow,
+            ledger.present,
+            ledger.error(),
+        )
+    }
+}

@@ -1,0 +1,302 @@
+//! A run in progress: sets the scheduled inputs, steps, samples, logs, saves; and closes everything in good order
+//! whether it ended, was interrupted or failed.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::folder::Folder;
+use super::log::RunLog;
+use super::progress::Progress;
+use super::series::Series;
+use super::{grid, plot, summary};
+use crate::cli::clock::{Stopwatch, cores};
+use crate::cli::{CliError, say};
+use crate::component::{Component, Mode, StepReport, ValueReference};
+use crate::scene::{InputTarget, Scene};
+
+/// A run as it is meant.
+pub(super) struct Plan {
+    /// End [s].
+    pub(super) until: f64,
+    /// Communication step [s].
+    pub(super) step: f64,
+    /// Threads, 0 for all cores.
+    pub(super) threads: usize,
+    /// Simulated time between checkpoints [s].
+    pub(super) checkpoint_every: Option<f64>,
+    /// The command that goes on with this run, without `--resume FILE`.
+    pub(super) go_on: String,
+    /// Whether to write a log.
+    pub(super) log: bool,
+}
+
+/// How the stepping ended.
+pub(super) enum Outcome {
+    /// At the end time.
+    Finished,
+    /// By Ctrl-C, at a communication point.
+    Interrupted,
+    /// By an error; everything before it stands.
+    Failed(CliError),
+}
+
+impl Outcome {
+    /// The status in `summary.json` and in the log's end, and the error's text.
+    fn words(&self) -> (&'static str, Option<String>) {
+        match self {
+            Self::Finished => ("finished", None),
+            Self::Interrupted => ("interrupted", None),
+            Self::Failed(error) => ("failed", Some(error.to_string())),
+        }
+    }
+}
+
+/// Figures of this part of a run (a resumed run has several parts).
+pub(super) struct Part {
+    /// Simulated time it began at [s].
+    pub(super) from: f64,
+    /// Wall and CPU time since then.
+    pub(super) watch: Stopwatch,
+    /// Smallest internal step [s].
+    pub(super) smallest_step: f64,
+    /// Communication steps by what bound their smallest internal step.
+    pub(super) bound_by: BTreeMap<&'static str, u64>,
+}
+
+/// A run in progress.
+pub(super) struct Session {
+    pub(super) plan: Plan,
+    pub(super) component: Component,
+    pub(super) folder: Folder,
+    pub(super) series: Series,
+    pub(super) part: Part,
+    pub(super) case: String,
+    pub(super) log: RunLog,
+    progress: Progress,
+    next_checkpoint: f64,
+}
+
+/// A component ready to be initialised, or at the saved state.
+///
+/// # Errors
+/// [`CliError::Component`]; [`CliError::Usage`] if the saved state is already at or past the end.
+pub(super) fn ready(
+    scene: &Scene,
+    saved: Option<&[u8]>,
+    plan: &Plan,
+) -> Result<Component, CliError> {
+    let mut component = Component::new(scene)?;
+    component.set_threads(plan.threads);
+    let Some(bytes) = saved else {
+        return Ok(component);
+    };
+    component.restore(bytes)?;
+    if component.mode() != Mode::Stepping {
+        return Err(CliError::Usage(format!(
+            "the saved state is in mode {:?}, allowed Stepping; give the checkpoint.state of a run",
+            component.mode()
+        )));
+    }
+    let time = component.time();
+    if grid::next(time, plan.step, plan.until).is_none() {
+        return Err(CliError::Usage(format!(
+            "the saved state is at t = {time} s and the run ends at {} s; give a later end with --until",
+            plan.until
+        )));
+    }
+    Ok(component)
+}
+
+impl Session {
+    /// Opens the files of the folder and, unless it was restored, initialises the component.
+    ///
+    /// # Errors
+    /// [`CliError::File`], [`CliError::Content`], [`CliError::Log`], [`CliError::Component`].
+    pub(super) fn open(
+        plan: Plan,
+        mut component: Component,
+        folder: Folder,
+        case: &Path,
+    ) -> Result<Self, CliError> {
+        let resumed = component.mode() == Mode::Stepping;
+        let mut log = if plan.log {
+            RunLog::start(&folder, &component, resumed)?
+        } else {
+            RunLog::none()
+        };
+        if !resumed {
+            component.initialize(0.0, None)?;
+            log.initialized(&component, 0.0)?;
+        }
+        let from = component.time();
+        let keep = folder.earlier.is_some().then_some(from);
+        let mut series = Series::open(&folder.file("gauges.csv"), &component, keep)?;
+        if series.time.last() != Some(&from) {
+            series.sample(&component)?;
+        }
+        let mut session = Self {
+            progress: Progress::start(&component.scene().name, from, plan.until),
+            next_checkpoint: plan.checkpoint_every.map_or(f64::INFINITY, |every| {
+                grid::next(from, every, f64::INFINITY).unwrap_or(f64::INFINITY)
+            }),
+            part: Part {
+                from,
+                watch: Stopwatch::start(),
+                smallest_step: f64::INFINITY,
+                bound_by: BTreeMap::new(),
+            },
+            case: case.display().to_string(),
+            plan,
+            component,
+            folder,
+            series,
+            log,
+        };
+        session.write_summary("running", None)?;
+        session.announce()?;
+        Ok(session)
+    }
+
+    fn announce(&mut self) -> Result<(), CliError> {
+        let text = format!(
+            "{}: {} particles, {} threads, communication step {} s, to t = {} s",
+            self.case,
+            self.component.statistics().particles,
+            self.threads(),
+            self.plan.step,
+            self.plan.until
+        );
+        eprintln!("{text}, results in {}", self.folder.path().display());
+        self.log.say(&self.component, &text)
+    }
+
+    /// Threads in use.
+    pub(super) fn threads(&self) -> usize {
+        match self.plan.threads {
+            0 => cores(),
+            n => n,
+        }
+    }
+
+    /// Steps to the end, to Ctrl-C or to the first error.
+    pub(super) fn advance(&mut self, stop: &AtomicBool) -> Outcome {
+        while let Some(next) = grid::next(self.component.time(), self.plan.step, self.plan.until) {
+            if stop.load(Ordering::SeqCst) {
+                return Outcome::Interrupted;
+            }
+            if let Err(error) = self.step_to(next) {
+                return Outcome::Failed(error);
+            }
+        }
+        Outcome::Finished
+    }
+
+    fn step_to(&mut self, next: f64) -> Result<(), CliError> {
+        let time = self.component.time();
+        let (references, values) = scheduled(&self.component, time);
+        self.component.set(&references, &values)?;
+        self.log.inputs(&self.component, &references, &values);
+        let report = self.component.do_step(time, next - time)?;
+        self.count(&report);
+        self.log.step(&self.component, &report, time, next - time)?;
+        self.series.sample(&self.component)?;
+        self.progress.show(&self.component);
+        if self.component.time() >= self.next_checkpoint {
+            self.checkpoint()?;
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, report: &StepReport) {
+        self.part.smallest_step = self.part.smallest_step.min(report.smallest_step);
+        *self
+            .part
+            .bound_by
+            .entry(summary::bound_name(report.bound_by))
+            .or_default() += 1;
+    }
+
+    /// Saves the state; the table is on disk first, so that a resumed run finds its rows.
+    fn checkpoint(&mut self) -> Result<(), CliError> {
+        self.series.flush()?;
+        self.folder
+            .replace("checkpoint.state", &self.component.save()?)?;
+        self.write_summary("running", None)?;
+        if let Some(every) = self.plan.checkpoint_every {
+            let time = self.component.time();
+            self.next_checkpoint = grid::next(time, every, f64::INFINITY).unwrap_or(f64::INFINITY);
+        }
+        Ok(())
+    }
+
+    fn write_summary(&self, status: &str, error: Option<&str>) -> Result<(), CliError> {
+        let text = summary::json(self, status, error)?;
+        self.folder.replace("summary.json", text.as_bytes())
+    }
+
+    /// Finishes every file, prints the table and says how to go on.
+    ///
+    /// # Errors
+    /// The error that ended the run; [`CliError::Interrupted`] with the command to go on; [`CliError::File`],
+    /// [`CliError::Log`].
+    pub(super) fn close(mut self, mut outcome: Outcome) -> Result<(), CliError> {
+        self.progress.finish();
+        if let Err(error) = self.finish_log(&outcome)
+            && !matches!(outcome, Outcome::Failed(_))
+        {
+            outcome = Outcome::Failed(error);
+        }
+        self.series.flush()?;
+        if self.component.mode() == Mode::Stepping {
+            self.checkpoint()?;
+        }
+        let title = &self.component.scene().title;
+        match plot::svg(title, &self.series) {
+            Ok(svg) => self.folder.replace("gauges.svg", svg.as_bytes())?,
+            Err(error) => eprintln!("warning: gauges.svg could not be drawn: {error}"),
+        }
+        let (status, error) = outcome.words();
+        self.write_summary(status, error.as_deref())?;
+        say(&summary::table(&self, status))?;
+        match outcome {
+            Outcome::Finished => Ok(()),
+            Outcome::Interrupted => Err(CliError::Interrupted(format!(
+                "interrupted at t = {} s; everything is saved. Go on with:\n  {} --resume {}",
+                self.component.time(),
+                self.plan.go_on,
+                self.folder.file("checkpoint.state").display()
+            ))),
+            Outcome::Failed(error) => Err(error),
+        }
+    }
+
+    fn finish_log(&mut self, outcome: &Outcome) -> Result<(), CliError> {
+        let (status, error) = outcome.words();
+        self.log.finish(&self.component, status, error.as_deref())
+    }
+}
+
+/// The scheduled inputs at `time` [s]: references and values for one `set`.
+pub(in crate::cli) fn scheduled(
+    component: &Component,
+    time: f64,
+) -> (Vec<ValueReference>, Vec<f64>) {
+    let scene = component.scene();
+    scene
+        .schedules
+        .iter()
+        .filter_map(|schedule| {
+            let name = match schedule.input {
+                InputTarget::GateOpening(gate) => {
+                    format!("gate.{}.opening", scene.gates[gate].name)
+                }
+                InputTarget::InflowRate(inflow) => {
+                    format!("inflow.{}.rate", scene.inflows[inflow].name)
+                }
+            };
+            let variable = component.variables().by_name(&name)?;
+            Some((variable.reference, schedule.value_at(time)))
+        })
+        .unzip()
+}

@@ -1,0 +1,236 @@
+//! The final figures of a run: `summary.json` for programs, a table for people. Both read the same values.
+
+use serde_json::{Map, Value, json};
+
+use super::folder::MADE_BY;
+use super::session::Session;
+use crate::cli::CliError;
+use crate::component::{Causality, ValueKind};
+use crate::solver::StepBound;
+
+/// Name of a step bound in files and tables.
+pub(in crate::cli) fn bound_name(bound: StepBound) -> &'static str {
+    match bound {
+        StepBound::Acoustic => "acoustic",
+        StepBound::Motion => "motion",
+        StepBound::Viscous => "viscous",
+        StepBound::Communication => "communication",
+    }
+}
+
+/// The text of `summary.json`. SI units; a value that is no finite number is written as text.
+///
+/// # Errors
+/// [`CliError::Component`] if values cannot be read.
+pub(super) fn json(
+    session: &Session,
+    status: &str,
+    error: Option<&str>,
+) -> Result<String, CliError> {
+    let component = &session.component;
+    let scene = component.scene();
+    let (ledger, figures) = (component.ledger(), component.statistics());
+    let parts = parts(session);
+    let total = |key: &str| number(parts.iter().filter_map(|part| part[key].as_f64()).sum());
+    let summary = json!({
+        "made_by": MADE_BY,
+        "version": env!("CARGO_PKG_VERSION"),
+        "status": status,
+        "error": error,
+        "case": session.case,
+        "scene": scene.name,
+        "title": scene.title,
+        "scene_sha256": hex(&scene.fingerprint()),
+        "time": number(component.time()),
+        "until": number(session.plan.until),
+        "communication_step": number(session.plan.step),
+        "communication_steps": figures.communication_steps,
+        "steps": figures.steps,
+        "iterations": figures.iterations,
+        "particles": figures.particles,
+        "kinetic_energy": number(figures.kinetic_energy),
+        "max_speed": number(figures.max_speed),
+        "share_dilute": number(figures.share_dilute),
+        "mass": {
+            "initial": number(ledger.initial),
+            "inflow": number(ledger.inflow),
+            "outflow": number(ledger.outflow),
+            "present": number(ledger.present),
+            "error": number(ledger.error()),
+        },
+        "state_sha256": component.state_hash(),
+        "threads": session.threads(),
+        "wall_s": total("wall_s"),
+        "cpu_s": total("cpu_s"),
+        "parts": parts,
+        "variables": variables(session)?,
+    });
+    Ok(format!("{summary:#}\n"))
+}
+
+/// One entry a part of the run; the earlier ones come from the summary they left.
+fn parts(session: &Session) -> Vec<Value> {
+    let part = &session.part;
+    let earlier = session.folder.earlier.as_ref();
+    let mut parts: Vec<Value> = earlier
+        .and_then(|summary| summary["parts"].as_array().cloned())
+        .unwrap_or_default();
+    let (to, wall) = (session.component.time(), part.watch.wall());
+    parts.push(json!({
+        "from": number(part.from),
+        "to": number(to),
+        "threads": session.threads(),
+        "wall_s": number(wall),
+        "cpu_s": number(part.watch.cpu()),
+        "realtime_factor": number((to - part.from) / wall.max(1e-9)),
+        "smallest_step": number(part.smallest_step),
+        "bound_by": part.bound_by,
+        "log": session.log.name,
+    }));
+    parts
+}
+
+/// Every input and output: unit, final value, and extremes with their times where it is a scalar.
+fn variables(session: &Session) -> Result<Map<String, Value>, CliError> {
+    let component = &session.component;
+    let mut all = Map::new();
+    let rows = component.variables().rows().iter();
+    for row in rows.filter(|v| matches!(v.causality, Causality::Input | Causality::Output)) {
+        let mut values = vec![0.0; row.len()];
+        component.get(&[row.reference], &mut values)?;
+        let mut entry = json!({ "unit": row.unit });
+        if row.shape.is_empty() {
+            entry["final"] = number(values[0]);
+        } else {
+            entry["final"] = values.iter().map(|&v| number(v)).collect();
+        }
+        if let Some(extremes) = extremes(session, &row.name) {
+            let ((low, low_at), (high, high_at)) = extremes;
+            entry["min"] = number(low);
+            entry["min_at"] = number(low_at);
+            entry["max"] = number(high);
+            entry["max_at"] = number(high_at);
+        }
+        all.insert(row.name.clone(), entry);
+    }
+    Ok(all)
+}
+
+/// Smallest and largest sample of a scalar with their times [s].
+fn extremes(session: &Session, name: &str) -> Option<((f64, f64), (f64, f64))> {
+    let column = session.series.columns.iter().find(|c| c.name == name)?;
+    let samples = || {
+        column
+            .values
+            .iter()
+            .copied()
+            .zip(session.series.time.iter().copied())
+    };
+    let low = samples().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let high = samples().max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))?;
+    Some((low, high))
+}
+
+/// The table printed at the end of a run.
+pub(super) fn table(session: &Session, status: &str) -> String {
+    let component = &session.component;
+    let (ledger, figures) = (component.ledger(), component.statistics());
+    let (wall, cpu) = (session.part.watch.wall(), session.part.watch.cpu());
+    let simulated = component.time() - session.part.from;
+    let mut lines = vec![
+        String::new(),
+        format!(
+            "{} {status} at t = {} s",
+            component.scene().name,
+            component.time()
+        ),
+        format!(
+            "  steps   {} communication, {} internal, {} iterations",
+            figures.communication_steps, figures.steps, figures.iterations
+        ),
+        format!(
+            "  time    wall {wall:.2} s, CPU {cpu:.2} s on {} threads, {:.3} x real time",
+            session.threads(),
+            simulated / wall.max(1e-9)
+        ),
+        format!(
+            "  mass    initial {} + in {} - out {} = present {} kg, error {}",
+            short(ledger.initial),
+            short(ledger.inflow),
+            short(ledger.outflow),
+            short(ledger.present),
+            ledger.error()
+        ),
+        format!("  state   {}", component.state_hash()),
+        String::new(),
+    ];
+    lines.extend(variable_rows(session));
+    lines.push(String::new());
+    lines.push(format!("results in {}", session.folder.path().display()));
+    lines.join("\n")
+}
+
+/// Scalars of gauges and devices: final value and extremes.
+fn variable_rows(session: &Session) -> Vec<String> {
+    let shown: Vec<_> = session
+        .series
+        .columns
+        .iter()
+        .filter(|c| {
+            let device = ["gauge.", "gate.", "inflow.", "outflow."];
+            !c.is_element && device.iter().any(|prefix| c.name.starts_with(prefix))
+        })
+        .collect();
+    let width = shown.iter().map(|c| c.name.len()).max().unwrap_or(0).max(8);
+    let mut rows = vec![format!(
+        "  {:width$}  {:>12} {:>12} {:>12}  unit",
+        "variable", "final", "smallest", "largest"
+    )];
+    for column in shown {
+        let Some(((low, _), (high, _))) = extremes(session, &column.name) else {
+            continue;
+        };
+        let last = column.values.last().copied().unwrap_or(f64::NAN);
+        let unit = match column.kind {
+            ValueKind::Real => column.unit,
+            ValueKind::Integer | ValueKind::Boolean => "",
+        };
+        rows.push(format!(
+            "  {:width$}  {:>12} {:>12} {:>12}  {unit}",
+            column.name,
+            short(last),
+            short(low),
+            short(high)
+        ));
+    }
+    rows
+}
+
+/// Six significant digits, for people; files hold all digits.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{value:.4e}");
+    }
+    let digits = 5_i32.saturating_sub(size.log10().floor() as i32).max(0);
+    let text = format!("{value:.*}", usize::try_from(digits).unwrap_or(0));
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A JSON number, or text for what JSON cannot hold (serde_json would write null).
+fn number(value: f64) -> Value {
+    serde_json::Number::from_f64(value)
+        .map_or_else(|| Value::String(value.to_string()), Value::Number)
+}
+
+/// Lower-case hexadecimal.
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
