@@ -42,13 +42,8 @@ impl<const D: usize> Solver<D> {
     }
 
     /// V = m / (rho width), areas in the plane.
-    pub(super) fn update_volumes(&mut self, state: &State<D>) {
-        let grains = &state.grains;
-        for (v, (m, rho)) in self
-            .volume
-            .iter_mut()
-            .zip(grains.mass.iter().zip(&grains.density))
-        {
+    pub(super) fn update_volumes(&mut self, mass: &[f64], density: &[f64]) {
+        for (v, (m, rho)) in self.volume.iter_mut().zip(mass.iter().zip(density)) {
             *v = m / (rho * self.width);
         }
     }
@@ -60,7 +55,7 @@ impl<const D: usize> Solver<D> {
         self.viscosity.resize(n, 0.0);
         self.pair_viscosity.resize(n, 0.0);
         self.inertial_number.resize(n, 0.0);
-        self.update_volumes(state);
+        self.update_volumes(&state.grains.mass, &state.grains.density);
         for i in 0..n {
             let k = self.kinematics[i];
             let response = match &self.materials[state.grains.phase[i] as usize] {

@@ -43,7 +43,7 @@ impl<const D: usize> Solver<D> {
     pub(super) fn sweep_kinematics(&mut self, state: &State<D>) {
         let n = state.grains.len();
         self.volume.resize(n, 0.0);
-        self.update_volumes(state);
+        self.update_volumes(&state.grains.mass, &state.grains.swept_density);
         self.kinematics.resize(n, Kinematics::default());
         let mut kinematics = std::mem::take(&mut self.kinematics);
         let mut blocks = std::mem::take(&mut self.lists.blocks);

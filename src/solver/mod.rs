@@ -338,6 +338,8 @@ impl<const D: usize> Solver<D> {
         {
             self.renew_lists(state);
         }
+        let grains = &mut state.grains;
+        grains.swept_density.clone_from(&grains.density);
         self.sweep_kinematics(state);
     }
 

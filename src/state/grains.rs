@@ -15,6 +15,9 @@ pub struct Grains<const D: usize> {
     pub velocity: Vec<Vector<D>>,
     /// Bulk density rho [kg/m^3].
     pub density: Vec<f64>,
+    /// Bulk density at the last sweep over pairs, before the step's own change: pair coefficients are made of it
+    /// [kg/m^3].
+    pub swept_density: Vec<f64>,
     /// Mass m, a multiple of a power of two [kg].
     pub mass: Vec<f64>,
     /// Shear rate relaxed in time, for the equation of state [1/s].
@@ -38,6 +41,7 @@ macro_rules! for_each_field {
         $f(&mut $self.position, $($extra)*);
         $f(&mut $self.velocity, $($extra)*);
         $f(&mut $self.density, $($extra)*);
+        $f(&mut $self.swept_density, $($extra)*);
         $f(&mut $self.mass, $($extra)*);
         $f(&mut $self.relaxed_shear, $($extra)*);
         $f(&mut $self.viscous_acceleration, $($extra)*);
@@ -74,6 +78,7 @@ impl<const D: usize> Grains<D> {
         self.position.push(position);
         self.velocity.push(velocity);
         self.density.push(density);
+        self.swept_density.push(density);
         self.mass.push(mass);
         self.relaxed_shear.push(0.0);
         self.viscous_acceleration.push([0.0; D]);
@@ -98,6 +103,7 @@ impl<const D: usize> Grains<D> {
         let lengths = [
             self.velocity.len(),
             self.density.len(),
+            self.swept_density.len(),
             self.mass.len(),
             self.relaxed_shear.len(),
             self.viscous_acceleration.len(),
@@ -110,6 +116,7 @@ impl<const D: usize> Grains<D> {
             && self
                 .density
                 .iter()
+                .chain(&self.swept_density)
                 .chain(&self.mass)
                 .all(|v| v.is_finite() && *v > 0.0)
             && self
