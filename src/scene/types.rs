@@ -182,7 +182,8 @@ pub struct Inflow {
     pub to: Point,
     /// In space: second edge of the face, from `from` [m].
     pub span: Point,
-    /// Velocity of entering material; its direction must leave the face [m/s].
+    /// Velocity of entering material [m/s]: it points to the left of the way from `from` to `to` (in space: along
+    /// (to - from) x span), so material enters on that side and comes from the other.
     pub velocity: Point,
     /// Rate at the start [kg/s].
     pub rate: f64,

@@ -47,15 +47,10 @@ impl Lift<'_> {
 
     /// Exactly one of box, polygon and column, as the dimension allows.
     fn shape(&mut self, entry: &Entry<RawBody>, raw: &RawBody) -> Option<Shape> {
-        let given = [
-            raw.r#box.as_ref().map(|_| "box"),
-            raw.polygon.as_ref().map(|_| "polygon"),
-            raw.column.as_ref().map(|_| "column"),
-        ];
         self.check_one_of(
             &entry.place,
-            &given,
-            "box, polygon, column",
+            &raw.given,
+            &["box", "polygon", "column"],
             "box = { lower = [0, 0], upper = [0.1, 0.1] }",
         )?;
         match (&raw.r#box, &raw.polygon, &raw.column) {
@@ -76,11 +71,12 @@ impl Lift<'_> {
     pub(super) fn check_one_of(
         &mut self,
         table: &Place,
-        given: &[Option<&str>],
-        keys: &str,
+        given: &[&str],
+        keys: &[&str],
         example: &str,
     ) -> Option<()> {
-        let names: Vec<&str> = given.iter().copied().flatten().collect();
+        let stands = |key: &&str| given.contains(key);
+        let names: Vec<&str> = keys.iter().copied().filter(stands).collect();
         let remedy = match names.len() {
             0 => format!("add for example {example}"),
             1 => return Some(()),
@@ -90,8 +86,8 @@ impl Lift<'_> {
             0 => "none of them".to_owned(),
             _ => names.join(" and "),
         };
-        self.problems
-            .report(table, found, format!("exactly one of {keys}"), remedy);
+        let allowed = format!("exactly one of {}", keys.join(", "));
+        self.problems.report(table, found, allowed, remedy);
         None
     }
 
@@ -320,9 +316,13 @@ impl Lift<'_> {
 
     /// A scene without bodies and inflows has nothing to do.
     pub(super) fn check_something_flows(&mut self) {
-        let bodies = self.raw.bodies.as_ref().map_or(0, |b| b.value.0.len());
-        let inflows = self.raw.inflows.as_ref().map_or(0, |b| b.value.0.len());
-        if bodies + inflows == 0 {
+        // A section that is there but could not be read has been reported.
+        let bodies = self.raw.bodies.as_ref().map(|b| b.value.0.len());
+        let inflows = self.raw.inflows.as_ref().map(|i| i.value.0.len());
+        let some = |count: Option<usize>, key: &str| {
+            count.unwrap_or(usize::from(self.raw.given.contains(&key))) > 0
+        };
+        if !some(bodies, "bodies") && !some(inflows, "inflows") {
             self.problems.report(
                 &Place::default().child("bodies"),
                 "neither a body nor an inflow",

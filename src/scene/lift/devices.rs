@@ -24,7 +24,7 @@ impl Lift<'_> {
             let known = self.raw.materials.as_ref();
             self.index_of(&name.value.0, &name.place, "materials", known)
         });
-        let span = self.span(raw.span.as_ref(), &entry.place);
+        let span = self.span(raw.span.as_ref(), &raw.given, &entry.place);
         let from = raw.from.as_ref().and_then(|p| self.point(p));
         let to = raw.to.as_ref().and_then(|p| self.point(p));
         let velocity = raw.velocity.as_ref().and_then(|v| self.vector(v));
@@ -107,11 +107,8 @@ impl Lift<'_> {
 
     fn outflow(&mut self, entry: &Entry<RawOutflow>, raw: &RawOutflow) -> Option<Outflow> {
         let (lower, upper) = self.corners(raw.lower.as_ref(), raw.upper.as_ref())?;
-        if !(self.check_inside(&raw.lower.as_ref()?.place, lower)
-            && self.check_inside(&raw.upper.as_ref()?.place, upper))
-        {
-            return None;
-        }
+        self.check_inside(&raw.lower.as_ref()?.place, lower);
+        self.check_inside(&raw.upper.as_ref()?.place, upper);
         let region = Region::block(self.planar(), lower, upper);
         let eps = self.eps();
         if let Some((other, _)) = self.drains.iter().find(|(_, r)| r.overlaps(&region, eps)) {

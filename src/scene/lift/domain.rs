@@ -23,19 +23,16 @@ impl Lift<'_> {
 
     /// Width belongs to planar scenes.
     fn width(&mut self, raw: &RawDomain) -> Option<f64> {
-        match &raw.width {
-            Some(width) if !self.planar() => {
-                self.problems.report(
-                    &width.place,
-                    "width in a scene with dimension = 3",
-                    "width only in planar scenes",
-                    "delete it",
-                );
-                None
-            }
-            Some(width) => Some(width.value.0),
-            None => Some(1.0),
+        let width = raw.width.as_ref()?;
+        if !self.planar() && raw.given.contains(&"width") {
+            self.problems.report(
+                &width.place,
+                "width in a scene with dimension = 3",
+                "width only in planar scenes",
+                "delete it",
+            );
         }
+        Some(width.value.0)
     }
 
     /// Size and slope, or a vector.

@@ -26,7 +26,7 @@ impl Lift<'_> {
             RawGauge::Depth(raw) => self.depth(raw),
             RawGauge::Profile(raw) => self.profile(&entry.place, raw),
             RawGauge::Discharge(raw) => {
-                let span = self.span(raw.span.as_ref(), &entry.place);
+                let span = self.span(raw.span.as_ref(), &raw.given, &entry.place);
                 let from = raw.from.as_ref().and_then(|p| self.point(p));
                 let to = raw.to.as_ref().and_then(|p| self.point(p));
                 let (from, to, span) = (from?, to?, span?);

@@ -37,9 +37,11 @@ impl Lift<'_> {
             Preset::Sand08 => MuI::sand_08(),
             Preset::Sand04 => MuI::sand_04(),
         });
-        let mut value = |key: &str, given: Option<f64>, from: Option<f64>| {
+        let mut value = |key: &'static str, given: Option<f64>, from: Option<f64>| {
             let value = given.or(from);
-            if value.is_none() {
+            // A parameter or preset that is there but could not be read has been reported.
+            let reported = raw.given.contains(&key) || raw.given.contains(&"preset");
+            if value.is_none() && !reported {
                 self.report_missing_parameter(table, key);
             }
             value

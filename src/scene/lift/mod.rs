@@ -196,7 +196,12 @@ impl<'r> Lift<'r> {
     }
 
     /// The second edge of a face: needed in space, refused in the plane.
-    fn span<Q>(&mut self, span: Option<&At<Coordinates<Q>>>, table: &Place) -> Option<Point> {
+    fn span<Q>(
+        &mut self,
+        span: Option<&At<Coordinates<Q>>>,
+        given: &[&str],
+        table: &Place,
+    ) -> Option<Point> {
         match (span, self.planar()) {
             (None, true) => Some([0.0; 3]),
             (Some(span), true) => {
@@ -209,6 +214,7 @@ impl<'r> Lift<'r> {
                 None
             }
             (Some(span), false) => self.vector(span),
+            (None, false) if given.contains(&"span") => None,
             (None, false) => {
                 self.problems.report(
                     &table.child("span"),
@@ -251,6 +257,9 @@ impl<'r> Lift<'r> {
         section: &str,
         entries: Option<&At<Named<T>>>,
     ) -> Option<usize> {
+        if entries.is_none() && self.raw.given.contains(&section) {
+            return None;
+        }
         let entries: &[Entry<T>] = entries.map_or(&[], |e| &e.value.0);
         let index = entries.iter().position(|e| e.name == name);
         if index.is_none() {

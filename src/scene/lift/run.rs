@@ -51,7 +51,7 @@ impl Lift<'_> {
             });
         };
         let every = log.value.particles_every.as_ref()?;
-        let left_out = every.place.offset == log.place.offset;
+        let left_out = !log.value.given.contains(&"particles_every");
         let mut particles_every = every.value.0;
         if left_out {
             particles_every = particles_every.max(step);

@@ -55,18 +55,13 @@ impl Lift<'_> {
 
     /// Exactly one of polyline, box and plane.
     fn wall_geometry(&mut self, entry: &Entry<RawWall>, raw: &RawWall) -> Option<WallGeometry> {
-        let given = [
-            raw.polyline.as_ref().map(|_| "polyline"),
-            raw.r#box.as_ref().map(|_| "box"),
-            raw.plane.as_ref().map(|_| "plane"),
-        ];
         self.check_one_of(
             &entry.place,
-            &given,
-            "polyline, box, plane",
+            &raw.given,
+            &["polyline", "box", "plane"],
             "polyline = [[0, 0], [1, 0]]",
         )?;
-        if let (Some(closed), None) = (&raw.closed, &raw.polyline) {
+        if let (Some(closed), false) = (&raw.closed, raw.given.contains(&"polyline")) {
             self.problems.report(
                 &closed.place,
                 "closed without a polyline",
@@ -195,7 +190,7 @@ impl Lift<'_> {
     }
 
     fn gate(&mut self, entry: &Entry<RawGate>, raw: &RawGate) -> Option<Gate> {
-        let span = self.span(raw.span.as_ref(), &entry.place);
+        let span = self.span(raw.span.as_ref(), &raw.given, &entry.place);
         let from = raw.from.as_ref().and_then(|p| self.point(p));
         let to = raw.to.as_ref().and_then(|p| self.point(p));
         let thickness = self.thickness(raw);

@@ -17,6 +17,9 @@ macro_rules! table {
         $(#[doc = $about])+
         #[derive(Clone, Debug)]
         pub(in crate::scene) struct $name {
+            /// The keys that stand in the file, readable or not.
+            #[allow(dead_code, reason = "few tables have checks that need it")]
+            pub(in crate::scene) given: Vec<&'static str>,
             $( $(#[doc = $doc])+ pub(in crate::scene) $field: Option<At<$ty>>, )*
         }
 
@@ -37,7 +40,10 @@ macro_rules! table {
                 let keys = Self::KEYS.iter().map(|k| k.name).chain(node.tag());
                 refuse_unknown(&entries, keys, problems);
                 let mut key = 0;
+                let known = Self::KEYS.iter().map(|k| k.name);
+                let stands = |key: &&str| entries.iter().any(|(name, _)| name == key);
                 Some(Self {
+                    given: known.filter(stands).collect(),
                     $( $field: {
                         let spec = &Self::KEYS[key];
                         key += 1;

@@ -2,6 +2,16 @@
 
 use serde_json::{Map, Value, json};
 
+/// A number as people write it: 1e-14, not 0.00000000000001.
+fn short(number: f64) -> String {
+    let small = number != 0.0 && number.abs() < 1e-4;
+    if small || number.abs() >= 1e7 {
+        format!("{number:e}")
+    } else {
+        format!("{number}")
+    }
+}
+
 /// An interval; each end may be open, closed or absent (infinite).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
@@ -59,8 +69,26 @@ impl Range {
 
     /// In words, with a unit.
     pub(super) fn text(self, unit: &str) -> String {
-        let unit = if unit == "1" { "" } else { unit };
-        let (lower, upper) = (self.lower, self.upper);
+        if unit == "rad" {
+            // People think of slopes and friction in degrees.
+            let degrees = |a: f64| (a.to_degrees() * 10.0).round() / 10.0;
+            let (lower, upper) = (degrees(self.lower), degrees(self.upper));
+            let range = Self {
+                lower,
+                upper,
+                ..self
+            };
+            return format!(
+                "{}, that is {}",
+                self.plain_text("rad"),
+                range.plain_text("deg")
+            );
+        }
+        self.plain_text(if unit == "1" { "" } else { unit })
+    }
+
+    fn plain_text(self, unit: &str) -> String {
+        let [lower, upper] = [self.lower, self.upper].map(short);
         let text = match (self.lower_open, self.upper.is_finite()) {
             (true, false) => format!("above {lower} {unit}"),
             (false, false) => format!("{lower} {unit} or more"),

@@ -1,8 +1,6 @@
 //! Reading the parsed file without stopping at the first problem: nodes that know their place, the collector of
 //! problems, and the trait of everything that can stand behind a key.
 
-use std::ops::Range as Span;
-
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
 use toml::Spanned;
@@ -267,7 +265,12 @@ impl KeySpec {
             } else {
                 format!("add {} = {example}", self.name)
             };
-            problems.report(&place, "nothing", format!("{}: {about}", self.name), remedy);
+            problems.report(
+                &place,
+                "nothing",
+                format!("the key {}: {about}", self.name),
+                remedy,
+            );
             return None;
         }
         let value = DeValue::parse(self.default?).ok()?;
@@ -385,10 +388,10 @@ pub(in crate::scene) fn read_document<T: Field>(
     T::read(&node, problems)
 }
 
-/// Byte range of a syntax error, as a place.
-pub(in crate::scene) fn syntax_place(span: Option<Span<usize>>) -> Place {
+/// The place of a syntax error, which belongs to no key.
+pub(in crate::scene) fn syntax_place(offset: usize) -> Place {
     Place {
-        offset: span.map_or(0, |s| s.start),
+        offset,
         key: String::new(),
     }
 }

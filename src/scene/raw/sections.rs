@@ -15,23 +15,23 @@ table! {
         required domain: RawDomain;
         /// Resolution and every numerical choice.
         required numerics: RawNumerics;
-        /// Materials by name.
+        /// At least one; bodies and inflows refer to them by name.
         required materials: Named<RawMaterial>;
-        /// Material that is there at the start, by name.
+        /// What is there at the start; a scene without bodies needs an inflow.
         optional bodies: Named<RawBody>;
-        /// Fixed walls, by name.
+        /// Force gauges refer to them as wall.NAME.
         optional walls: Named<RawWall>;
-        /// Plates that slide to open a gap, by name; the opening is the input gate.NAME.opening.
+        /// The opening is the input gate.NAME.opening; force gauges refer to gates as gate.NAME.
         optional gates: Named<RawGate>;
-        /// Sources of material, by name; the rate is the input inflow.NAME.rate.
+        /// The rate is the input inflow.NAME.rate.
         optional inflows: Named<RawInflow>;
-        /// Boxes in which material is taken out and counted, by name.
+        /// Outputs are outflow.NAME.mass and outflow.NAME.rate.
         optional outflows: Named<RawOutflow>;
-        /// What is measured, by name.
+        /// Outputs are gauge.NAME.*, each with a validity flag.
         optional gauges: Named<RawGauge>;
         /// Communication step and end time.
         required run: RawRun;
-        /// What inputs are told over time when no orchestrator sets them; an array of tables.
+        /// For runs without an orchestrator; one for each input at most.
         optional schedule: List<RawSchedule>;
         /// What a run writes to its log.
         optional log: RawLog;
@@ -47,12 +47,12 @@ table! {
         required upper: Coordinates<Length>;
         /// Axes along which the domain repeats itself.
         optional periodic: List<Axis>;
-        /// Out-of-plane width of a planar scene (1 m if left out): masses, forces and discharges are for this width.
-        optional width: Length, in Range::above(0.0);
+        /// Out-of-plane width of a planar scene: masses, forces and discharges are for this width.
+        optional width: Length, in Range::above(0.0), default "1 m";
         /// Gravitational acceleration: its size, downwards along the last axis, or a vector.
         optional gravity: Gravity, default "9.81 m/s^2";
         /// Slope of the bed: turns gravity towards +x, so that a bed along x is an inclined plane. Not with a gravity vector.
-        optional slope: Angle, in Range::within(-std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2);
+        optional slope: Angle, in Range::within(-1.5, 1.5);
     }
 }
 
@@ -190,7 +190,7 @@ table! {
     RawColumn {
         /// Centre of its base.
         required base: Coordinates<Length>;
-        /// Radius.
+        /// Radius of the column.
         required radius: Length, in Range::above(0.0);
         /// Height along z.
         required height: Length, in Range::above(0.0);
@@ -284,7 +284,7 @@ table! {
 }
 
 tagged! {
-    /// Something measured; outputs are gauge.NAME.*.
+    /// Something measured at every communication step.
     RawGauge by kind {
         "depth" => Depth(RawDepth),
         "profile" => Profile(RawProfile),
