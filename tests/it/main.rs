@@ -1,7 +1,9 @@
 //! All integration tests of the package in one binary: one link instead of one for each file.
 
 mod contract;
+mod json_schema;
 mod python;
+mod scenes;
 #[path = "../contract/mod.rs"]
 mod suite;
 mod variables;
