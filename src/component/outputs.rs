@@ -58,7 +58,8 @@ pub(super) fn sample(
             continue;
         }
         for k in 0..row.len() {
-            let value = moment.value(*source, k);
+            // -0 (a force on a dry wall, say) becomes 0.
+            let value = moment.value(*source, k) + 0.0;
             if !value.is_finite() {
                 return Err(format!(
                     "output {} is {value}; allowed: finite numbers",

@@ -183,13 +183,17 @@ impl<const D: usize> Engine for Simulation<D> {
             .filter(|(_, w)| **w > 0.5)
             .map(|(x, _)| *x)
             .collect();
-        let cells = self.cells(&grains.position);
+        // Grains that an outflow has taken stay in the arrays until lists are rebuilt; gauges do not see them.
+        let present: Vec<usize> = (0..grains.len()).filter(|&i| !grains.drained[i]).collect();
+        let pick = |values: &[f64]| -> Vec<f64> { present.iter().map(|&i| values[i]).collect() };
+        let position: Vec<Vector<D>> = present.iter().map(|&i| grains.position[i]).collect();
+        let cells = self.cells(&position);
         let solid = self.cells(&solid);
         let view = View {
-            position: &grains.position,
-            mass: &grains.mass,
-            density: &grains.density,
-            pressure: self.solver.pressure(),
+            position: &position,
+            mass: &pick(&grains.mass),
+            density: &pick(&grains.density),
+            pressure: &pick(self.solver.pressure()),
             cells: &cells,
             solid: &solid,
             spacing: self.spacing,
@@ -228,8 +232,13 @@ impl<const D: usize> Engine for Simulation<D> {
     fn ledger(&self) -> MassLedger {
         MassLedger {
             initial: self.state.initial_mass,
-            inflow: self.state.inflows.iter().map(|i| i.admitted).sum(),
-            outflow: self.state.drained.iter().sum(),
+            // An empty sum of floats is -0; no flow is +0.
+            inflow: self
+                .state
+                .inflows
+                .iter()
+                .fold(0.0, |sum, i| sum + i.admitted),
+            outflow: self.state.drained.iter().fold(0.0, |sum, mass| sum + mass),
             present: self.state.grains.present_mass(),
         }
     }

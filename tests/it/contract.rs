@@ -65,3 +65,8 @@ fn component_keeps_the_contract_on_a_silo() {
 fn component_keeps_the_contract_with_every_device() {
     check_all(&make, &scene("devices.toml"));
 }
+
+#[test]
+fn component_keeps_the_contract_in_space() {
+    check_all(&make, &scene("devices_3d.toml"));
+}

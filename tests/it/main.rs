@@ -1,6 +1,8 @@
 //! All integration tests of the package in one binary: one link instead of one for each file.
 
+mod component;
 mod contract;
+mod gauges;
 mod json_schema;
 mod python;
 mod scenes;

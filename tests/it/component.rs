@@ -1,0 +1,124 @@
+//! What the component does beyond the contract that all adapters share: slopes of inputs, failed steps.
+
+use crate::gauges::{set, step, stepping, value};
+use sandgate::component::{Error, Mode, Severity};
+
+#[test]
+fn slopes_ramp_inputs_inside_one_step() {
+    let mut silo = stepping("tests/scenes/small_silo.toml");
+    let h = silo.scene().run.step;
+    let gate = silo
+        .variables()
+        .by_name("gate.main.opening")
+        .unwrap()
+        .reference;
+    silo.set_input_derivatives(&[gate], &[8.0]).unwrap();
+    let report = silo.do_step(0.0, h).unwrap();
+    assert_eq!(
+        value(&silo, "gate.main.opening"),
+        8.0 * h,
+        "the input holds what it reached"
+    );
+    let actual = value(&silo, "gate.main.actual_opening");
+    // The plate follows the ramp an internal step behind.
+    let behind = 8.0 * h - actual;
+    assert!(
+        (0.0..=1.5 * 8.0 * report.smallest_step).contains(&behind),
+        "{actual} is {behind} behind"
+    );
+    step(&mut silo, 1);
+    assert_eq!(
+        value(&silo, "gate.main.actual_opening"),
+        8.0 * h,
+        "no slope is left"
+    );
+
+    silo.set_input_derivatives(&[gate], &[-1e3]).unwrap();
+    let before = silo.state_hash();
+    let message = silo.do_step(silo.time(), h).unwrap_err().to_string();
+    assert!(
+        message.contains("gate.main.opening at the end of the step")
+            && message.contains("allowed 0 to 1"),
+        "{message}"
+    );
+    assert_eq!(silo.state_hash(), before);
+    let message = silo
+        .set_input_derivatives(&[gate], &[f64::NAN])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("found NaN, allowed a finite slope"),
+        "{message}"
+    );
+    let threads = silo
+        .variables()
+        .by_name("solver.threads")
+        .unwrap()
+        .reference;
+    let message = silo
+        .set_input_derivatives(&[threads], &[1.0])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("found a parameter, allowed inputs"),
+        "{message}"
+    );
+    set(&mut silo, "gate.main.opening", 0.5);
+    step(&mut silo, 1);
+    assert_eq!(
+        value(&silo, "gate.main.opening"),
+        0.5,
+        "setting an input drops its slope"
+    );
+}
+
+/// Grains that fall out of the domain make a step fail.
+#[test]
+fn failed_step_leaves_time_and_outputs_at_the_last_good_step() {
+    let mut falling = stepping("tests/scenes/no_floor.toml");
+    let h = falling.scene().run.step;
+    let mut good = falling.save().unwrap();
+    let (time, depth, error) = loop {
+        let seen = (falling.time(), value(&falling, "energy.kinetic"));
+        match falling.do_step(falling.time(), h) {
+            Ok(_) => good = falling.save().unwrap(),
+            Err(error) => break (seen.0, seen.1, error),
+        }
+        assert!(falling.time() < 10.0, "nothing fell out of the domain");
+    };
+    assert!(matches!(error, Error::Solver(_)), "{error}");
+    assert!(error.to_string().contains("particle"), "{error}");
+    assert_eq!(
+        (error.severity(), error.status().fmi),
+        (Severity::Failed, 3)
+    );
+    assert_eq!(
+        (
+            falling.mode(),
+            falling.time(),
+            value(&falling, "energy.kinetic")
+        ),
+        (Mode::Failed, time, depth)
+    );
+    let message = falling.do_step(time, h).unwrap_err().to_string();
+    assert!(
+        message.contains("do_step is not allowed in mode Failed; allowed in Stepping"),
+        "{message}"
+    );
+
+    let failed = falling.save().unwrap();
+    falling.restore(&good).unwrap();
+    assert_eq!((falling.mode(), falling.time()), (Mode::Stepping, time));
+    assert!(falling.save().unwrap() == good);
+    falling.do_step(time, 0.001 * h).unwrap();
+    falling.restore(&failed).unwrap();
+    assert_eq!(
+        falling.mode(),
+        Mode::Failed,
+        "a failed component saves as failed"
+    );
+    falling.reset().unwrap();
+    assert_eq!((falling.mode(), falling.time()), (Mode::Instantiated, 0.0));
+    falling.initialize(0.0, None).unwrap();
+    step(&mut falling, 1);
+}
