@@ -105,12 +105,13 @@ impl Lift<'_> {
             return;
         };
         let name = Self::axis_name(axis);
-        let least = 4.0 * ratio.value.0 * spacing;
+        // Support and list skin on both sides of a particle.
+        let least = 4.6 * ratio.value.0 * spacing;
         if period < least {
             self.problems.report(
                 &at.place,
                 format!("a period of {period} m along {name}"),
-                format!("at least {least} m, four smoothing lengths"),
+                format!("at least {least} m, 4.6 smoothing lengths"),
                 "lengthen the domain along this axis, or refine numerics.spacing",
             );
         }

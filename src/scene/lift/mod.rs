@@ -4,6 +4,7 @@
 //! the same. A scene is built only if nothing was reported.
 
 mod bodies;
+mod clearance;
 mod devices;
 mod domain;
 mod gauges;

@@ -4,16 +4,16 @@
 //! these tables into the typed scene. Rules that concern more than one key stand there, not here.
 
 mod declare;
+mod groups;
 mod range;
 mod read;
 mod sections;
 mod values;
 
+pub(super) use groups::{Coordinates, Entry, Gravity, List, Named, SeriesPoint};
 pub(super) use read::{At, Place, Problems, nearest, read_document, syntax_place};
 pub(super) use sections::*;
-pub(super) use values::{
-    Angle, Coordinates, Entry, Gravity, Length, List, Named, Ratio, SeriesPoint, Text,
-};
+pub(super) use values::{Angle, Length, Ratio, Text};
 
 use declare::{choice, table, tagged};
 use range::Range;
