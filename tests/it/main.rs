@@ -1,5 +1,10 @@
 //! All integration tests of the package in one binary: one link instead of one for each file.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "in a test, a failed unwrap is a failed test"
+)]
+
 mod component;
 mod contract;
 mod gauges;
