@@ -20,6 +20,8 @@ impl Component {
         }
         for (reference, value) in references.iter().zip(values) {
             match self.table.source(*reference) {
+                // A new pool of threads costs time: only when the number is another.
+                Some(Source::Threads) if *value as usize == self.threads => {}
                 Some(Source::Threads) => self.set_threads(*value as usize),
                 Some(source) => {
                     if let Some(ramp) = self.input_mut(*source) {

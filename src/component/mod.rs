@@ -208,7 +208,7 @@ impl Component {
     /// # Errors
     /// [`Error::Snapshot`].
     pub fn save(&self) -> Result<Vec<u8>, Error> {
-        let payload = self.payload().map_err(Error::Snapshot)?;
+        let payload = self.payload(&self.life).map_err(Error::Snapshot)?;
         Ok(snapshot::seal(&self.fingerprint, &payload))
     }
 
@@ -239,8 +239,8 @@ impl Component {
     }
 
     /// The state without header: length of life, life, engine.
-    fn payload(&self) -> Result<Vec<u8>, String> {
-        snapshot::join(&self.life, &self.engine.save()?)
+    fn payload(&self, life: &Life) -> Result<Vec<u8>, String> {
+        snapshot::join(life, &self.engine.save()?)
     }
 
     /// Back to Instantiated with start values, as after `new` (threads stay). Allowed in every mode.
@@ -296,11 +296,16 @@ impl Component {
         self.engine.set_threads(threads);
     }
 
-    /// SHA-256 of the state (without header), hex: two components with the same hash go on with the same bits.
+    /// SHA-256 of the state (without header and stop time), hex: two components with the same hash go on with the
+    /// same bits.
     #[must_use]
     pub fn state_hash(&self) -> String {
+        let life = Life {
+            stop: None,
+            ..self.life.clone()
+        };
         // A state too large to encode has no hash; its error text stands in, so that it equals no other state's.
-        self.payload()
+        self.payload(&life)
             .map_or_else(|why| why, |payload| snapshot::hash(&payload))
     }
 }

@@ -47,10 +47,7 @@ impl<const D: usize> DepthLine<D> {
         let step = 0.25 * view.spacing;
         let count = (self.length / step).ceil().max(1.0) as usize;
         let height = |k: usize| (k as f64 * step).min(self.length);
-        let Some(filled) = (0..=count)
-            .rev()
-            .find(|&k| self.fill(view, height(k)) >= 0.5)
-        else {
+        let Some(filled) = self.highest_filled(view, count, &height) else {
             return Err(Validity::Empty);
         };
         if view.material_sum(&along(&self.foot, &self.up, height(filled))) < DRY {
@@ -70,6 +67,39 @@ impl<const D: usize> DepthLine<D> {
             }
         }
         Ok(low)
+    }
+
+    /// Largest k from `count` down to 0 with S >= 0.5 at `height(k)`.
+    ///
+    /// Goes down in blocks of a kernel radius and passes over those that no material reaches, where S is 0.
+    fn highest_filled(
+        &self,
+        view: &View<D>,
+        count: usize,
+        height: &impl Fn(usize) -> f64,
+    ) -> Option<usize> {
+        let support = view.kernel.support();
+        let block = ((support / (0.25 * view.spacing)) as usize).max(1);
+        let mut top = count + 1;
+        while top > 0 {
+            let bottom = top.saturating_sub(block);
+            let middle = 0.5 * (height(bottom) + height(top));
+            let mut is_reached = false;
+            // The block is at most a kernel radius long; half of it more takes in all that its places see.
+            let radius = 1.5 * support;
+            let centre = along(&self.foot, &self.up, middle);
+            view.cells
+                .for_each_within(&centre, radius, |_, _, _| is_reached = true);
+            if is_reached
+                && let Some(k) = (bottom..top)
+                    .rev()
+                    .find(|&k| self.fill(view, height(k)) >= 0.5)
+            {
+                return Some(k);
+            }
+            top = bottom;
+        }
+        None
     }
 
     /// The sum S at a height above the foot.
@@ -167,6 +197,33 @@ mod tests {
             sample([0.2, -2.5 * bed.spacing]),
             Reading::none(1, Validity::Blocked)
         );
+    }
+
+    #[test]
+    fn searching_in_blocks_finds_what_searching_everywhere_finds() {
+        // A bed with a slab that floats above it, seen by lines of many lengths and feet.
+        let bed = Bed::<2>::new(1.6, 30, 0.1).keep(|x| x[1] < 0.06 || (x[1] > 0.21 && x[0] < 0.2));
+        for k in 0..60 {
+            let length = 0.04 + 0.0071 * f64::from(k);
+            let foot = [0.0067 * f64::from(k), 0.0];
+            let line = DepthLine {
+                foot,
+                up: [0.0, 1.0],
+                length,
+            };
+            bed.look(|view| {
+                let count = (length / (0.25 * view.spacing)).ceil() as usize;
+                let height = |k: usize| (k as f64 * 0.25 * view.spacing).min(length);
+                let everywhere = (0..=count)
+                    .rev()
+                    .find(|&k| line.fill(view, height(k)) >= 0.5);
+                assert_eq!(
+                    line.highest_filled(view, count, &height),
+                    everywhere,
+                    "line {k}"
+                );
+            });
+        }
     }
 
     #[test]

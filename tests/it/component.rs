@@ -122,3 +122,29 @@ fn failed_step_leaves_time_and_outputs_at_the_last_good_step() {
     falling.initialize(0.0, None).unwrap();
     step(&mut falling, 1);
 }
+
+#[test]
+fn components_may_move_to_another_thread() {
+    fn is_send<T: Send>() {}
+    is_send::<sandgate::component::Component>();
+}
+
+#[test]
+fn hash_of_the_state_is_that_of_what_comes_next() {
+    let mut limited = stepping("tests/scenes/small_silo.toml");
+    limited.reset().unwrap();
+    limited.initialize(0.0, Some(1.0)).unwrap();
+    let mut free = stepping("tests/scenes/small_silo.toml");
+    assert_eq!(
+        limited.state_hash(),
+        free.state_hash(),
+        "a stop time changes no bit"
+    );
+    set(&mut free, "gate.main.opening", 0.5);
+    assert_ne!(limited.state_hash(), free.state_hash(), "an input does");
+    set(&mut limited, "gate.main.opening", 0.5);
+    step(&mut limited, 3);
+    step(&mut free, 3);
+    assert_eq!(limited.state_hash(), free.state_hash());
+    assert_eq!(free.state_hash().len(), 64);
+}
