@@ -155,7 +155,7 @@ pub(super) fn state(map: &mut Map<String, Value>) -> Result<Vec<u8>, Refusal> {
     }
 }
 
-/// A state as `save` gives it and `restore` takes it.
-pub(super) fn state_text(state: &[u8]) -> String {
-    BASE64.encode(state)
+/// Bytes in JSON: states as `save` gives and `restore` takes them, schemas.
+pub(super) fn base64_text(bytes: &[u8]) -> String {
+    BASE64.encode(bytes)
 }

@@ -6,7 +6,8 @@
 //! (which call is allowed when, ranges) are the component's own.
 
 use super::answered::{Answered, Earlier};
-use super::fields::state_text;
+use super::fields::base64_text;
+use super::publish::schemas;
 use super::refusal::{Code, Refusal};
 use super::reply::Reply;
 use super::request::Request;
@@ -242,7 +243,7 @@ impl Protocol {
                 let state = component.save()?;
                 Ok(object(
                     json!({"bytes": state.len(), "state_hash": component.state_hash(),
-                                 "state": state_text(&state)}),
+                                 "state": base64_text(&state)}),
                 ))
             }
             Verb::Restore => {
@@ -340,6 +341,10 @@ impl Protocol {
                 (verb.name().to_owned(), fields.into())
             })
             .collect();
+        let schemas: Fields = schemas()
+            .into_iter()
+            .map(|(name, bytes)| (name.to_owned(), base64_text(&bytes).into()))
+            .collect();
         object(json!({
             "protocol": VERSION,
             "program": concat!("sandgate ", env!("CARGO_PKG_VERSION")),
@@ -349,6 +354,7 @@ impl Protocol {
             "dt_ns": super::status::nanoseconds(scene.run.step),
             "verbs": verbs,
             "variables": values::describe(component.variables()),
+            "schemas": schemas,
         }))
     }
 }
@@ -448,18 +454,5 @@ fn object(value: Value) -> Fields {
     match value {
         Value::Object(map) => map,
         _ => Fields::new(),
-    }
-}
-
-impl From<component::Error> for Refusal {
-    fn from(error: component::Error) -> Self {
-        let code = match error {
-            component::Error::NotAllowedNow { .. } => Code::State,
-            component::Error::BadArgument { .. } => Code::Range,
-            component::Error::Solver(_) => Code::Diverged,
-            component::Error::Snapshot(_) => Code::BadRequest,
-            component::Error::Setup(_) => Code::Internal,
-        };
-        Self::new(code, error.to_string())
     }
 }

@@ -6,9 +6,10 @@
 use super::status::{Shared, lock};
 use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::convert::{self, Output};
-use crate::wire::foxglove::{FrameTransform, Log, LogLevel, PointCloud};
+use crate::wire::foxglove::{FrameTransform, Log, LogLevel, PointCloud, SceneUpdate};
 use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Command, Gauge, StepStats};
-use crate::wire::{Described, Observer, keys};
+use crate::wire::picture::scene_update;
+use crate::wire::{Described, Observer, keys, schema};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::SyncSender;
@@ -130,6 +131,22 @@ impl Publisher {
     }
 }
 
+/// The schema (a serialised `FileDescriptorSet`) of every message that is published, by the message's name.
+pub(super) fn schemas() -> Vec<(&'static str, Vec<u8>)> {
+    fn of<M: Described>() -> (&'static str, Vec<u8>) {
+        (M::FULL_NAME, schema::<M>())
+    }
+    vec![
+        of::<Gauge>(),
+        of::<StepStats>(),
+        of::<Applied>(),
+        of::<Log>(),
+        of::<PointCloud>(),
+        of::<FrameTransform>(),
+        of::<SceneUpdate>(),
+    ]
+}
+
 fn publication<M: prost::Message + Described>(key: Arc<str>, message: &M) -> Publication {
     Publication {
         key,
@@ -150,6 +167,8 @@ impl Observer for Publisher {
         let applied = self.applied(event, 0, start, stop.unwrap_or(f64::NAN), source);
         let mut batch = self.outputs(component, None);
         batch.insert(0, applied);
+        let scene = scene_update(component.scene(), start);
+        batch.push(publication(keys::scene(&self.base).into(), &scene));
         self.send(batch);
     }
 

@@ -1,5 +1,7 @@
 //! Why something was refused, and the codes by which replies spell it.
 
+use crate::component;
+
 /// Why a request was refused; spelled as in docs/zenoh.md.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
@@ -30,6 +32,22 @@ pub enum Code {
 }
 
 impl Code {
+    /// All of them.
+    const ALL: [Self; 12] = [
+        Self::BadRequest,
+        Self::UnknownVariable,
+        Self::Range,
+        Self::Type,
+        Self::State,
+        Self::Busy,
+        Self::NotOwner,
+        Self::Conflict,
+        Self::Diverged,
+        Self::Wildcard,
+        Self::TooLarge,
+        Self::Internal,
+    ];
+
     /// As it stands in replies.
     #[must_use]
     pub fn as_str(self) -> &'static str {
@@ -67,6 +85,51 @@ impl Refusal {
         Self {
             code,
             message: message.into(),
+        }
+    }
+}
+
+/// The component says itself which code its errors have.
+impl From<component::Error> for Refusal {
+    fn from(error: component::Error) -> Self {
+        let reply = error.status().reply;
+        let code = Code::ALL.into_iter().find(|code| code.as_str() == reply);
+        Self::new(code.unwrap_or(Code::Internal), error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::component::Mode;
+
+    #[test]
+    fn errors_of_the_component_have_codes_of_the_wire() {
+        let table = [
+            (component::Error::Setup(String::new()), Code::Internal),
+            (
+                component::Error::NotAllowedNow {
+                    call: "do_step",
+                    mode: Mode::Failed,
+                    allowed: String::new(),
+                },
+                Code::State,
+            ),
+            (
+                component::Error::BadArgument {
+                    call: "set",
+                    what: String::new(),
+                    found: String::new(),
+                    allowed: String::new(),
+                },
+                Code::Range,
+            ),
+            (component::Error::Solver(String::new()), Code::Diverged),
+            (component::Error::Snapshot(String::new()), Code::BadRequest),
+        ];
+        for (error, code) in table {
+            assert_eq!(error.status().reply, code.as_str());
+            assert_eq!(Refusal::from(error).code, code);
         }
     }
 }

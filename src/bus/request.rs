@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn a_state_goes_to_text_and_back() {
         let bytes: Vec<u8> = (0..=255).collect();
-        let body = format!(r#"{{"req":"1","state":"{}"}}"#, fields::state_text(&bytes));
+        let body = format!(r#"{{"req":"1","state":"{}"}}"#, fields::base64_text(&bytes));
         assert_eq!(
             Request::parse(Verb::Restore, body.as_bytes())
                 .unwrap()

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+#[cfg(feature = "bus")]
+use crate::bus::BusError;
 use crate::component;
 use crate::fmi;
 use crate::record::RecordError;
@@ -16,6 +18,7 @@ Exit codes:
   3    the scene was refused or cannot be built
   4    a step failed; what was computed before it is kept
   5    a file could not be read or written, or a saved state does not fit
+  6    the bus could not be opened or closed
   130  stopped by Ctrl-C, after saving";
 
 /// Errors of the program.
@@ -36,6 +39,10 @@ pub enum CliError {
     /// The log cannot be written, and the scene requires it.
     #[error("error: {0}")]
     Log(#[from] RecordError),
+    /// The bus could not be opened, or not be closed.
+    #[cfg(feature = "bus")]
+    #[error("error: {0}")]
+    Bus(#[from] BusError),
     /// A file could not be read or written.
     #[error("error: cannot {action} {}: {source}; {remedy}", path.display())]
     File {
@@ -80,6 +87,12 @@ impl CliError {
             Self::Fmu(_) => 5,
             Self::Log(_) | Self::File { .. } | Self::Content { .. } => 5,
             Self::Interrupted(_) => 130,
+            #[cfg(feature = "bus")]
+            Self::Bus(error) => match error {
+                BusError::Instance(_) | BusError::Endpoint(_) | BusError::Config { .. } => 2,
+                BusError::Component(_) => 3,
+                BusError::Zenoh { .. } | BusError::Taken { .. } | BusError::Thread(_) => 6,
+            },
             Self::ReaderGone => 0,
         }
     }

@@ -15,6 +15,8 @@ mod fmu;
 mod info;
 mod quantity;
 mod run;
+#[cfg(feature = "bus")]
+mod serve;
 mod stop;
 
 use std::io::Write as _;
@@ -44,6 +46,9 @@ enum Command {
     Info(info::Args),
     /// Pack a case into an FMU (FMI 2.0 or 3.0, co-simulation)
     Fmu(fmu::Args),
+    /// Serve a case on Zenoh: gauges out, set-points and requests in
+    #[cfg(feature = "bus")]
+    Serve(serve::Args),
 }
 
 /// Reads the command line, does what it says and returns the exit code (see `sandgate --help`).
@@ -72,6 +77,8 @@ fn dispatch(command: &Command) -> Result<(), CliError> {
         Command::Run(args) => run::run(args),
         Command::Info(args) => info::run(args),
         Command::Fmu(args) => fmu::run(args),
+        #[cfg(feature = "bus")]
+        Command::Serve(args) => serve::run(args),
     }
 }
 

@@ -28,7 +28,7 @@ impl Error {
             Error::NotAllowedNow { .. } => (refused, 2, 1, "state"),
             Error::BadArgument { .. } => (refused, 3, 2, "range"),
             Error::Solver(_) => (Severity::Failed, 4, 4, "diverged"),
-            Error::Snapshot(_) => (refused, 5, 5, "bad request"),
+            Error::Snapshot(_) => (refused, 5, 5, "bad_request"),
         };
         Status {
             severity,

@@ -5,6 +5,7 @@
     reason = "in a test, a failed unwrap is a failed test"
 )]
 
+mod bus;
 mod component;
 mod contract;
 mod gauges;

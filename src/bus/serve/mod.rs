@@ -127,10 +127,12 @@ impl Server {
     }
 
     /// Serves on the calling thread until `stop` is set or a client sends `terminate`. `observer` hears all traffic.
-    ///
-    /// # Errors
-    /// [`BusError::Zenoh`] if the session could not be closed.
-    pub fn run(mut self, observer: &mut dyn Observer, stop: &AtomicBool) -> Result<(), BusError> {
+    /// Gives the component back (its mode says whether it was terminated), and whether the session could be closed.
+    pub fn run(
+        mut self,
+        observer: &mut dyn Observer,
+        stop: &AtomicBool,
+    ) -> (Component, Result<(), BusError>) {
         let mut stepper = Stepper {
             component: self.component,
             protocol: self.protocol,
@@ -142,16 +144,17 @@ impl Server {
         // Nobody gets in any more; who still waits is answered as the queue is dropped; then the queues of the two
         // threads have no senders left, and they end when they are empty.
         drop(self.entrances);
-        drop(stepper);
+        let Stepper {
+            component, tasks, ..
+        } = stepper;
+        drop(tasks);
         drop(self.publisher);
         for thread in self.threads {
             // A panic there was reported by the thread itself, and who waited was answered.
             let _ = thread.join();
         }
-        self.session
-            .close()
-            .wait()
-            .map_err(failed("close the session"))
+        let closed = self.session.close().wait();
+        (component, closed.map_err(failed("close the session")))
     }
 }
 

@@ -1,0 +1,128 @@
+//! `sandgate serve CASE`: the scene's component on Zenoh, stepped by clients or by itself, until Ctrl-C or until a
+//! client sends `terminate`.
+
+mod log;
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use super::{CliError, load_scene, say, stop};
+use crate::bus::{ServeOptions, Server};
+use crate::component::{Component, Mode};
+use crate::wire::{Observer, Unobserved};
+use log::Log;
+
+/// What may be typed after `sandgate serve`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(super) struct Args {
+    /// The scene file, for example cases/silo_gate.toml
+    case: PathBuf,
+    /// Name in keys, 1 to 64 of a-z 0-9 _ - [default: the scene's name]
+    #[arg(long, value_name = "NAME")]
+    instance: Option<String>,
+    /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0]
+    #[arg(long, value_name = "ENDPOINT")]
+    listen: Vec<String>,
+    /// Connect to a router or peer at tcp/HOST:PORT; may be given more than once
+    #[arg(long, value_name = "ENDPOINT")]
+    connect: Vec<String>,
+    /// A configuration file of Zenoh (JSON5); scouting and admin space stay off whatever it says
+    #[arg(long, value_name = "FILE")]
+    zenoh_config: Option<PathBuf>,
+    /// Let other machines reach a listener: everybody who reaches it can move gates, step and read states
+    #[arg(long)]
+    allow_open_listener: bool,
+    /// Step without being asked: simulated over wall time, such as 1, or inf for as fast as possible
+    #[arg(long, value_name = "FACTOR", value_parser = realtime_factor)]
+    realtime_factor: Option<f64>,
+    /// Log all traffic to a new MCAP file; a reset or restore goes on in FILE-0001, ...
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+    /// Threads to compute with; 0 means all cores; results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
+    threads: u16,
+}
+
+const AFTER_HELP: &str = "\
+Keys (docs/zenoh.md has them all), below sandgate/v1/NAME:
+  @rpc/VERB        requests: describe status get set step run pause reset save restore terminate
+  in/VARIABLE      set-points, JSON
+  out/gauge/NAME   gauges as they are computed, protobuf
+  @alive           liveliness token
+
+Unless told otherwise it listens on this machine only, looks for nobody and waits for `step` requests.
+Schedules of the scene are for `sandgate run`: here clients set the inputs.";
+
+fn realtime_factor(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(factor) if factor > 0.0 => Ok(factor),
+        _ => Err("allowed: a number above 0, or inf for as fast as possible".to_owned()),
+    }
+}
+
+/// Serves until it is ended.
+///
+/// # Errors
+/// [`CliError::Scene`], [`CliError::Bus`], [`CliError::Log`]; [`CliError::Component`] if the scene cannot be built.
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    let scene = load_scene(&args.case)?;
+    let options = ServeOptions {
+        instance: args.instance.clone().unwrap_or_else(|| scene.name.clone()),
+        listen: args.listen.clone(),
+        connect: args.connect.clone(),
+        config_file: args.zenoh_config.clone(),
+        allow_open_listener: args.allow_open_listener,
+        realtime_factor: args.realtime_factor,
+    };
+    let mut component = Component::new(&scene)?;
+    component.set_threads(usize::from(args.threads));
+    let stop = stop::on_interrupt()?;
+    let mut log = match &args.log {
+        Some(file) => Some(Log::create(
+            file,
+            &component,
+            &options.instance,
+            stop.clone(),
+        )?),
+        None => None,
+    };
+    let mut nobody = Unobserved;
+    let observer: &mut dyn Observer = match &mut log {
+        Some(log) => log,
+        None => &mut nobody,
+    };
+    let server = Server::open(component, &options, observer)?;
+    announce(&server, &options)?;
+    let (component, closed) = server.run(observer, &stop);
+    let why = match component.mode() {
+        Mode::Terminated => "terminated by a client",
+        _ => "stopped",
+    };
+    let logged = log.map_or(Ok(String::new()), |log| log.finish(&component, why));
+    say(&format!(
+        "{why} at t = {} s after {} communication steps",
+        component.time(),
+        component.statistics().communication_steps
+    ))?;
+    let logged = logged?;
+    if !logged.is_empty() {
+        say(&logged)?;
+    }
+    Ok(closed?)
+}
+
+/// Where clients find it: one `listening on ENDPOINT` a line, for people and programs.
+fn announce(server: &Server, options: &ServeOptions) -> Result<(), CliError> {
+    say(&format!("serving sandgate/v1/{}", options.instance))?;
+    for listener in server.listeners() {
+        say(&format!("listening on {listener}"))?;
+    }
+    say(match options.realtime_factor {
+        None => "waiting for step requests (Ctrl-C ends)",
+        Some(_) => "running (Ctrl-C ends)",
+    })?;
+    // Programs that started this one read these lines through a pipe.
+    let _ = std::io::stdout().flush();
+    Ok(())
+}

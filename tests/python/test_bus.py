@@ -1,0 +1,424 @@
+"""A served silo, watched and driven by Python clients: `SANDGATE` is the program, `SANDGATE_ROOT` the source tree."""
+
+import contextlib
+import json
+import os
+import pathlib
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+import zenoh
+
+ROOT = pathlib.Path(os.environ["SANDGATE_ROOT"])
+SCENE = ROOT / "tests/scenes/small_silo.toml"
+BASE = "sandgate/v1/small_silo"
+GATE = "gate.main.opening"
+STEP_NS = 5_000_000
+
+sys.path.insert(0, str(ROOT / "examples"))
+from bus_client import Component, Refused, open_session  # noqa: E402
+
+
+class Server:
+    """The program, serving; its endpoint is the one that it printed."""
+
+    def __init__(self, *arguments):
+        command = [os.environ["SANDGATE"], "serve", str(SCENE), "--threads", "1", *arguments]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.endpoint = None
+        for line in self.process.stdout:
+            if line.startswith("listening on "):
+                self.endpoint = line.split()[-1]
+            if "(Ctrl-C ends)" in line:
+                return
+        raise AssertionError(f"{command} did not serve: {self.process.stderr.read()}")
+
+    def end(self):
+        """Ends it politely and gives what it printed."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+        try:
+            return self.process.communicate(timeout=60)
+        finally:
+            self.process.kill()
+
+
+@contextlib.contextmanager
+def served(*arguments):
+    server = Server(*arguments)
+    try:
+        with open_session(server.endpoint) as session:
+            yield server, session, Component(session, "small_silo", client="pytest")
+    finally:
+        server.end()
+
+
+@pytest.fixture(scope="module")
+def shared():
+    """One server for all tests that leave it as they found it, but for time."""
+    with served() as parts:
+        yield parts
+
+
+@pytest.fixture
+def silo(shared):
+    silo = shared[2]
+    silo.ask("reset")
+    return silo
+
+
+@pytest.fixture
+def session(shared):
+    return shared[1]
+
+
+def subscribe(session, key):
+    arrived = queue.Queue()
+    return session.declare_subscriber(key, arrived.put), arrived
+
+
+def raw(session, key, payload=None, timeout=20.0):
+    """Every answer to a query as (is it an error, JSON)."""
+    replies = session.get(key, payload=payload, timeout=timeout)
+    return [(r.ok is None, json.loads((r.ok or r.err).payload.to_string())) for r in replies]
+
+
+def until(condition, seconds=20.0):
+    """Waits for what must become true; polls, so that a slow machine only takes longer."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+
+
+def test_gauges_are_published_as_they_are_computed(session, silo):
+    classes = silo.message_classes()
+    subscriber, arrived = subscribe(session, f"{BASE}/out/**")
+    until(lambda: silo.ask("step") and not arrived.empty())
+    first = silo.ask("status")["step"]
+    for _ in range(5):
+        reply = silo.ask("step")
+    outputs = silo.ask("get")["outputs"]
+    last = reply["step"]
+
+    by_key = {}
+    while not by_key.get(f"{BASE}/out/stats") or by_key[f"{BASE}/out/stats"][-1].step < last:
+        sample = arrived.get(timeout=20)
+        encoding, schema = str(sample.encoding).split(";")
+        assert encoding == "application/protobuf"
+        message = classes[schema].FromString(sample.payload.to_bytes())
+        by_key.setdefault(str(sample.key_expr), []).append(message)
+    subscriber.undeclare()
+
+    names = {key.removeprefix(f"{BASE}/out/").replace("/", ".", 1): key for key in by_key}
+    for name in ["gauge.level.depth", "gauge.surface.depth", "gauge.outlet.discharge", "gauge.load.force_y"]:
+        gauges = [g for g in by_key[names[name]] if g.step > first]
+        assert [g.step for g in gauges] == list(range(first + 1, last + 1)), name
+        sequence = [g.sequence for g in gauges]
+        assert sequence == list(range(sequence[0], sequence[0] + 5)), name
+        assert gauges[-1].name == name
+        assert gauges[-1].time == pytest.approx(last * STEP_NS * 1e-9, abs=1e-12)
+        value = outputs[name]
+        assert list(gauges[-1].values) == (value if isinstance(value, list) else [value]), name
+        assert gauges[-1].validity == outputs[f"{name.rsplit('.', 1)[0]}.validity"]
+    stats = by_key[f"{BASE}/out/stats"][-1]
+    ledger = stats.ledger
+    assert ledger.initial + ledger.inflow - ledger.outflow == ledger.present > 0
+    applied = [a for a in by_key[f"{BASE}/out/applied"] if a.step > first]
+    assert [a.step for a in applied] == list(range(first + 1, last + 1))
+
+
+def test_the_gate_moves_by_set_point_and_by_request(session, silo):
+    classes = silo.message_classes()
+    subscriber, arrived = subscribe(session, f"{BASE}/out/applied")
+    session.put(f"{BASE}/in/{GATE}", '{"value": 0.5, "client": "plc"}')
+    until(lambda: silo.ask("get", outputs=[GATE])["outputs"][GATE] == 0.5)
+    opened = silo.ask("step", outputs=["gate.main.actual_opening"])
+    assert 0 < opened["outputs"]["gate.main.actual_opening"] <= 0.5
+    silo.ask("set", inputs={GATE: 0.25})
+    silo.ask("step", inputs={GATE: 0.125})
+    inputs = []
+    while len(inputs) < 3:
+        applied = classes["sandgate.Applied"].FromString(arrived.get(timeout=20).payload.to_bytes())
+        inputs += [(applied.step, i.name, i.values[0], i.source) for i in applied.inputs]
+    assert inputs == [(1, GATE, 0.5, "plc"), (2, GATE, 0.25, "pytest"), (2, GATE, 0.125, "pytest")]
+    subscriber.undeclare()
+
+
+def test_a_plain_number_is_a_set_point(session, silo):
+    session.put(f"{BASE}/in/{GATE}", "0.75")
+    until(lambda: silo.ask("get", outputs=[GATE])["outputs"][GATE] == 0.75)
+
+
+def test_status_is_answered_while_a_step_runs(silo):
+    done = queue.Queue()
+    long = threading.Thread(target=lambda: done.put(silo.ask("step", dt_ns=1_000_000_000)))
+    long.start()
+    seen, slowest = [], 0.0
+    while done.empty():
+        asked = time.monotonic()
+        status = silo.ask("status")
+        slowest = max(slowest, time.monotonic() - asked)
+        seen.append(status)
+    long.join()
+    busy = [s for s in seen if s["busy"] and s["busy"]["verb"] == "step"]
+    assert len(busy) >= 2, f"{len(seen)} replies while a step of 1 s ran"
+    assert all(s["step"] == 0 and s["busy"]["client"] == "pytest" for s in busy)
+    assert done.get()["t_ns"] == 1_000_000_000
+    # The step takes much longer than this; a status that had to wait for it would show.
+    assert slowest < 1.0
+    assert silo.ask("status")["busy"] is None
+
+
+def test_bad_messages_get_one_reply_each_and_nothing_happens(session, silo):
+    before = silo.ask("save")["state_hash"]
+    step = f"{BASE}/@rpc/step"
+    table = [
+        (step, "{", "bad_request"),
+        (step, "\xff\x00", "bad_request"),
+        (step, '{"req":"1","dt_ns":NaN}', "bad_request"),
+        (step, '{"req":"2","dt":1}', "bad_request"),
+        (step, None, "bad_request"),
+        (step, '{"req":"3","dt_ns":"5 ms"}', "type"),
+        (step, '{"req":"4","dt_ns":0}', "range"),
+        (step, " " * (1 << 20) + "{}", "too_large"),
+        (step + "?dt_ns=5", '{"req":"5"}', "bad_request"),
+        (f"{BASE}/@rpc/stepp", '{"req":"6"}', "bad_request"),
+        (f"{BASE}/@rpc/step/now", '{"req":"7"}', "bad_request"),
+        (f"{BASE}/@rpc/set", '{"req":"8","inputs":{"gate.none.opening":1}}', "unknown_variable"),
+        (f"{BASE}/@rpc/set", '{"req":"9","inputs":{"gate.main.opening":2}}', "range"),
+        (f"{BASE}/@rpc/*", '{"req":"10"}', "wildcard"),
+        (f"{BASE}/@rpc/**", '{"req":"11"}', "wildcard"),
+        ("sandgate/v1/*/@rpc/step", '{"req":"12"}', "wildcard"),
+        ("sandgate/v1/*/@rpc/*", '{"req":"13"}', "wildcard"),
+    ]
+    for key, payload, code in table:
+        replies = raw(session, key, payload)
+        assert len(replies) == 1, (key, replies)
+        is_error, reply = replies[0]
+        assert reply["ok"] is False and reply["code"] == code, (key, reply)
+        assert is_error == (code == "wildcard")
+        assert reply["step"] == 0 and reply["mode"] == "stepping"
+    assert silo.ask("save")["state_hash"] == before
+
+
+def test_a_repeated_request_gets_the_same_reply_and_no_second_step(session, silo):
+    body = '{"req":"c7e1","client":"orch-1","dt_ns":5000000}'
+    first = raw(session, f"{BASE}/@rpc/step", body)
+    again = raw(session, f"{BASE}/@rpc/step", body)
+    assert first == again and first[0][1]["ok"]
+    assert silo.ask("status")["step"] == 1
+    [(_, other)] = raw(session, f"{BASE}/@rpc/step", body.replace("5000000", "6000000"))
+    assert other["code"] == "conflict"
+
+
+def test_a_wrong_expectation_is_a_conflict(silo):
+    silo.ask("step", expect_step=0, t_ns=0)
+    for wrong in [{"expect_step": 0}, {"t_ns": 0}]:
+        with pytest.raises(Refused, match="^conflict: ") as refused:
+            silo.ask("step", **wrong)
+        assert refused.value.reply["step"] == 1
+    assert silo.ask("step", expect_step=1, t_ns=STEP_NS)["step"] == 2
+
+
+def test_bad_set_points_are_counted_and_told_and_change_nothing(session, silo):
+    classes = silo.message_classes()
+    subscriber, arrived = subscribe(session, f"{BASE}/out/log")
+    refused = silo.ask("status")["refused_set_points"]
+    session.put(f"{BASE}/in/*", "1")
+    session.put(f"{BASE}/in/**", "1")
+    session.put("sandgate/v1/*/in/gate.main.opening", "1")
+    session.delete(f"{BASE}/in/{GATE}")
+    session.put(f"{BASE}/in/{GATE}", "NaN")
+    session.put(f"{BASE}/in/{GATE}", "1.5")
+    session.put(f"{BASE}/in/gate.none.opening", "1")
+    until(lambda: silo.ask("status")["refused_set_points"] == refused + 7)
+    lines = [classes["foxglove.Log"].FromString(arrived.get(timeout=20).payload.to_bytes()) for _ in range(7)]
+    assert all(line.message.startswith("set-point refused: ") for line in lines)
+    assert sum("wildcard" in line.message for line in lines) == 3
+    assert silo.ask("get", outputs=[GATE])["outputs"][GATE] == 0
+    subscriber.undeclare()
+
+
+def test_a_state_goes_to_the_client_and_back(silo):
+    silo.ask("step", inputs={GATE: 1})
+    saved = silo.ask("save")
+    silo.ask("step")
+    gone_on = silo.ask("save")["state_hash"]
+    restored = silo.ask("restore", state=saved["state"])
+    assert restored["state_hash"] == saved["state_hash"] and restored["step"] == 1
+    silo.ask("step")
+    assert silo.ask("save")["state_hash"] == gone_on
+
+
+def test_who_comes_late_gets_the_last_values(session, silo):
+    silo.ask("step")
+    depth = silo.ask("get", outputs=["gauge.level.depth"])["outputs"]["gauge.level.depth"]
+    Gauge = silo.message_classes()["sandgate.Gauge"]
+    [reply] = session.get(f"{BASE}/out/gauge/level.depth")
+    gauge = Gauge.FromString(reply.ok.payload.to_bytes())
+    assert (gauge.step, gauge.values[0]) == (1, depth)
+    every = {str(r.ok.key_expr) for r in session.get(f"{BASE}/out/gauge/**")}
+    names = [v["name"] for v in silo.ask("describe")["variables"]]
+    names = [n for n in names if n.startswith("gauge.") and not n.endswith(".validity")]
+    assert every == {f"{BASE}/out/{name.replace('.', '/', 1)}" for name in names} and len(every) > 4
+    assert len(list(session.get(f"{BASE}/out/scene"))) == 1
+    [(is_error, reply)] = raw(session, f"{BASE}/out/nothing")
+    assert is_error and "nothing was published" in reply["message"]
+
+
+def test_particles_are_made_only_for_somebody():
+    with served() as (_, session, silo):
+        silo.ask("step")
+        [(is_error, _)] = raw(session, f"{BASE}/out/particles")
+        assert is_error
+        subscriber, arrived = subscribe(session, f"{BASE}/out/particles")
+        until(lambda: silo.ask("step") and not arrived.empty())
+        PointCloud = silo.message_classes()["foxglove.PointCloud"]
+        cloud = PointCloud.FromString(arrived.get().payload.to_bytes())
+        particles = silo.ask("status")["statistics"]["particles"]
+        assert len(cloud.data) == particles * cloud.point_stride > 0
+        subscriber.undeclare()
+
+
+def test_it_runs_by_itself_at_the_pace_it_was_told():
+    with served("--realtime-factor", "0.5") as (_, _, silo):
+        with pytest.raises(Refused, match="^state: .*pause"):
+            silo.ask("step")
+        began, first = time.monotonic(), silo.ask("status")["t_ns"]
+        until(lambda: silo.ask("status")["t_ns"] >= first + 300_000_000)
+        assert time.monotonic() - began > 0.4, "0.3 s at half pace take at least 0.6 s, less what status lags"
+        paused = silo.ask("pause")
+        assert silo.ask("step")["step"] == paused["step"] + 1
+
+
+def test_a_subscriber_that_stands_still_holds_up_nobody():
+    with served() as (server, session, silo):
+        watcher = f"""
+import os, sys, time
+sys.path.insert(0, {str(ROOT / "examples")!r})
+from bus_client import open_session
+with open_session({server.endpoint!r}) as session:
+    kept = [session.declare_subscriber("{BASE}/out/" + what, lambda sample: None) for what in ("particles", "**")]
+    print("subscribed", flush=True)
+    time.sleep(600)
+"""
+        with subprocess.Popen([sys.executable, "-c", watcher], stdout=subprocess.PIPE, text=True) as child:
+            try:
+                assert child.stdout.readline() == "subscribed\n"
+                child.send_signal(signal.SIGSTOP)
+                slowest, end, dropped = 0.0, time.monotonic() + 20, 0
+                # Publications are dropped once the queue is full behind one that is held up.
+                while not dropped and time.monotonic() < end:
+                    began = time.monotonic()
+                    silo.ask("step", dt_ns=100_000)
+                    dropped = silo.ask("status")["dropped_publications"]
+                    slowest = max(slowest, time.monotonic() - began)
+                # Zenoh holds a publication up for 5 s; a step or a status that waited for it would show.
+                assert slowest < 2.0
+            finally:
+                child.kill()
+
+
+def test_the_liveliness_token_ends_with_the_process():
+    server = Server()
+    # The watcher listens, so that it does not depend on what it watches.
+    with open_session(server.endpoint) as session:
+        states = queue.Queue()
+        watch = session.liveliness().declare_subscriber(f"{BASE}/@alive", states.put, history=True)
+        assert states.get(timeout=20).kind == zenoh.SampleKind.PUT
+        server.process.kill()
+        assert states.get(timeout=20).kind == zenoh.SampleKind.DELETE
+        watch.undeclare()
+    server.end()
+
+
+def test_terminate_ends_the_program():
+    with served() as (server, _, silo):
+        assert silo.ask("terminate")["mode"] == "terminated"
+        out, err = server.process.communicate(timeout=60)
+        assert server.process.returncode == 0, err
+        assert "terminated by a client at t = 0 s after 0 communication steps" in out
+
+
+def test_everybody_who_waits_is_answered_when_the_program_ends():
+    with served() as (server, session, silo):
+        answers = queue.Queue()
+
+        def ask(n):
+            body = json.dumps({"req": str(n), "dt_ns": 300_000_000})
+            answers.put(raw(session, f"{BASE}/@rpc/step", body, timeout=60))
+
+        threads = [threading.Thread(target=ask, args=[n]) for n in range(4)]
+        for thread in threads:
+            thread.start()
+        until(lambda: silo.ask("status")["busy"])
+        server.process.send_signal(signal.SIGINT)
+        for thread in threads:
+            thread.join()
+        replies = [answers.get() for _ in threads]
+        assert all(len(each) == 1 for each in replies), replies
+        ended = [each[0][1] for each in replies if not each[0][1]["ok"]]
+        assert ended and all(e["code"] == "state" and "the server ended" in e["message"] for e in ended)
+        assert server.process.wait(timeout=60) == 0
+
+
+def test_a_listener_for_everybody_must_be_meant():
+    command = [os.environ["SANDGATE"], "serve", str(SCENE), "--listen", "tcp/0.0.0.0:0"]
+    refused = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert refused.returncode == 2
+    assert "--allow-open-listener" in refused.stderr and "can be reached from other machines" in refused.stderr
+    with served("--listen", "tcp/0.0.0.0:0", "--allow-open-listener") as (server, _, _):
+        assert server.endpoint.startswith("tcp/0.0.0.0:")
+
+
+def test_a_name_is_served_once():
+    with served() as (server, _, _):
+        command = [os.environ["SANDGATE"], "serve", str(SCENE), "--connect", server.endpoint]
+        twin = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        assert twin.returncode == 6 and "choose another name with --instance" in twin.stderr
+        other = Server("--connect", server.endpoint, "--instance", "second")
+        with open_session(server.endpoint) as session:
+            until(lambda: raw(session, "sandgate/v1/second/@rpc/status", timeout=1))
+        other.end()
+
+
+def test_all_traffic_is_logged(tmp_path):
+    from mcap_protobuf.decoder import DecoderFactory
+    from mcap.reader import make_reader
+
+    path = tmp_path / "served.mcap"
+    with served("--log", str(path)) as (server, session, silo):
+        silo.ask("step", inputs={GATE: 0.5})
+        silo.ask("status")
+        raw(session, f"{BASE}/@rpc/step", "{")
+        session.put(f"{BASE}/in/{GATE}", "0.25")
+        until(lambda: silo.ask("get", outputs=[GATE])["outputs"][GATE] == 0.25)
+        silo.ask("step")
+        out, _ = server.end()
+        assert str(path) in out
+    seen = {}
+    with path.open("rb") as file:
+        for _, channel, _, message in make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+            seen.setdefault(channel.topic, []).append(message)
+    asked = seen[f"{BASE}/@rpc/step/request"]
+    answered = seen[f"{BASE}/@rpc/step/reply"]
+    assert sorted(a.status for a in answered) == ["bad_request", "ok", "ok"]
+    assert json.loads(asked[0].body)["inputs"] == {GATE: 0.5} and asked[0].client == "pytest"
+    assert seen[f"{BASE}/@rpc/status/reply"]
+    inputs = [(a.step, [(i.values[0], i.source) for i in a.inputs]) for a in seen[f"{BASE}/out/applied"] if a.step]
+    assert inputs == [(1, [(0.5, "pytest")]), (2, [(0.25, "set-point")])]
+
+
+def test_the_example_runs():
+    with served() as (server, _, _):
+        command = [sys.executable, str(ROOT / "examples/bus_client.py"), server.endpoint, "small_silo"]
+        example = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        assert example.returncode == 0, example.stderr
+        assert example.stdout.startswith("step 10: gate at 0.")
+        assert "gauge.outlet.discharge" in example.stdout and "account off by 0.0 kg" in example.stdout
