@@ -5,6 +5,7 @@
     reason = "in a test, a failed unwrap is a failed test"
 )]
 
+#[cfg(all(feature = "bus", feature = "cli"))]
 mod bus;
 mod component;
 mod contract;
