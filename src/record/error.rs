@@ -24,7 +24,9 @@ pub enum RecordError {
         source: std::io::Error,
     },
     /// A write failed, and the run said that its log is required.
-    #[error("{0}; the scene says log.required, so the run stops")]
+    #[error(
+        "{0}; the scene requires its log, so the run stops (log.required = false lets it go on)"
+    )]
     Required(Failure),
     /// The finished file cannot get its name.
     #[error("log is complete in {part} but cannot be renamed to {path}: {why}; rename it by hand")]

@@ -11,6 +11,9 @@ mod error;
 mod file;
 mod mass;
 mod observe;
+mod options;
+mod place;
+mod preamble;
 mod read;
 mod sink;
 #[cfg(test)]
@@ -19,5 +22,6 @@ mod write;
 
 pub use error::{Failure, ReadError, RecordError};
 pub use mass::{MassCheck, WrongLine, check_mass};
+pub use options::{Finished, RecordOptions};
 pub use read::{Body, Ending, Entry, LogReader};
-pub use write::{Finished, RecordOptions, Recorder};
+pub use write::Recorder;

@@ -56,8 +56,7 @@ fn whole(lines: &[StepStats], flush_every: usize) -> Vec<u8> {
         (counts.written, counts.dropped, failure),
         (lines.len() as u64, 0, None)
     );
-    let bytes = disk.bytes.lock().unwrap().clone();
-    bytes
+    disk.bytes.lock().unwrap().clone()
 }
 
 fn on_disk(folder: &Path, bytes: &[u8]) -> PathBuf {

@@ -6,65 +6,18 @@
 use super::channels::{Channel, Channels};
 use super::error::{Failure, RecordError};
 use super::file::{LogFile, Pace};
+use super::options::{Finished, RecordOptions};
+use super::place::Place;
+use super::preamble::{has_state, owned, write_preamble};
 use super::sink::Sink;
-use crate::component::{Component, Mode, StepReport, ValueReference};
+use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::convert::{self, nanoseconds, timestamp};
 use crate::wire::foxglove::{Log, LogLevel};
 use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Command};
 use crate::wire::{keys, picture};
 use prost::Message;
-use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
-
-/// How a log is written.
-#[derive(Clone, Debug)]
-pub struct RecordOptions {
-    /// Instance in topics, 1 to 64 of `a-z 0-9 _ -`.
-    pub instance: String,
-    /// `publish_time` is simulated time and chunks are closed at communication points: two equal runs then give equal
-    /// bytes. Otherwise `publish_time` is the wall clock and everything is on disk within a second.
-    pub deterministic: bool,
-    /// A failed write is an error of the next call; otherwise the run goes on without its log.
-    pub required: bool,
-    /// Particle snapshots every so many seconds of simulated time, 0 for none [s].
-    pub particles_every: f64,
-    /// Why this file begins: "start", "resumed", "reset", "restored".
-    pub reason: String,
-    /// Files to carry along, such as modelDescription.xml: name, media type, bytes.
-    pub attachments: Vec<(String, String, Vec<u8>)>,
-}
-
-impl RecordOptions {
-    /// What the component's scene asks for: instance and snapshots from the scene, `publish_time` from the wall clock.
-    #[must_use]
-    pub fn of(component: &Component) -> Self {
-        let scene = component.scene();
-        Self {
-            instance: scene.name.clone(),
-            deterministic: false,
-            required: scene.log.required,
-            particles_every: scene.log.particles_every,
-            reason: "start".to_owned(),
-            attachments: Vec::new(),
-        }
-    }
-}
-
-/// What became of a log.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Finished {
-    /// The file: under its final name if it is whole, else under the name that ends in `.part`.
-    pub path: Option<PathBuf>,
-    /// Messages in the file.
-    pub messages: u64,
-    /// Messages that are not in it because a write failed.
-    pub dropped: u64,
-    /// The first failure, if there was one.
-    pub failure: Option<Failure>,
-}
 
 /// Records one component. Made by [`Recorder::create`], ended by [`Recorder::finish`].
 pub struct Recorder {
@@ -77,63 +30,16 @@ pub struct Recorder {
     /// Snapshots that were due so far.
     snapshots: u64,
     trouble: Option<RecordError>,
+    last: Last,
 }
 
-/// Names of a file.
-#[derive(Clone, Debug)]
-pub(super) struct Place {
-    /// As given by the caller.
-    first: PathBuf,
-    /// Number of this file, from 0.
-    pub(super) segment: u32,
-}
-
-impl Place {
-    /// `run.mcap`, then `run-0001.mcap`, ...
-    fn path(&self) -> PathBuf {
-        if self.segment == 0 {
-            return self.first.clone();
-        }
-        let mut name = self.first.file_stem().unwrap_or_default().to_owned();
-        name.push(format!("-{:04}", self.segment));
-        if let Some(extension) = self.first.extension() {
-            name.push(".");
-            name.push(extension);
-        }
-        self.first.with_file_name(name)
-    }
-
-    /// The name until it is finished.
-    fn part(&self) -> PathBuf {
-        let mut name = self.path().into_os_string();
-        name.push(".part");
-        name.into()
-    }
-
-    fn create(&self) -> Result<std::fs::File, RecordError> {
-        let (path, part) = (self.path(), self.part());
-        if path.exists() {
-            return Err(RecordError::Exists { path });
-        }
-        std::fs::File::create_new(&part).map_err(|source| match source.kind() {
-            std::io::ErrorKind::AlreadyExists => RecordError::Exists { path: part },
-            _ => RecordError::Create { path: part, source },
-        })
-    }
-
-    fn rename(&self) -> Result<PathBuf, RecordError> {
-        let (path, part) = (self.path(), self.part());
-        let failed = |why: String| RecordError::Rename {
-            part: part.clone(),
-            path: path.clone(),
-            why,
-        };
-        if path.exists() {
-            return Err(failed("a file of that name appeared meanwhile".to_owned()));
-        }
-        std::fs::rename(&part, &path).map_err(|error| failed(error.to_string()))?;
-        Ok(path)
-    }
+/// Where the component was when its outputs were last written: a file that ends because the component jumped must not
+/// tell where it jumped to.
+#[derive(Clone, Copy, Default)]
+struct Last {
+    time: f64,
+    communication_steps: u64,
+    steps: u64,
 }
 
 impl Recorder {
@@ -183,7 +89,9 @@ impl Recorder {
             first_time: component.time(),
             snapshots: 0,
             trouble: None,
+            last: Last::default(),
         };
+        recorder.remember(component);
         recorder.scene(component);
         if has_state(component) {
             recorder.applied(
@@ -355,7 +263,7 @@ impl Recorder {
         let sink = Box::new(next.create()?);
         let mut following = Self::start(sink, Some(next), component, options)?;
         following.trouble = self.trouble.take();
-        std::mem::replace(self, following).close(component, reason)?;
+        std::mem::replace(self, following).close(None, reason)?;
         Ok(())
     }
 
@@ -387,25 +295,23 @@ impl Recorder {
     ///
     /// # Errors
     /// [`RecordError::Required`] if the log is required and not whole, [`RecordError::Rename`].
-    pub fn finish(self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
-        self.close(component, reason)
+    pub fn finish(mut self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
+        self.remember(component);
+        self.close(Some(component.state_hash()), reason)
     }
 
-    fn close(mut self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
-        let figures = component.statistics();
-        let end = [
+    fn close(mut self, state_hash: Option<String>, reason: &str) -> Result<Finished, RecordError> {
+        let last = self.last;
+        let mut end = owned([
             ("reason", reason.to_owned()),
-            ("time", component.time().to_string()),
-            ("time_bits", format!("{:016x}", component.time().to_bits())),
-            (
-                "communication_steps",
-                figures.communication_steps.to_string(),
-            ),
-            ("steps", figures.steps.to_string()),
-            ("state_hash", component.state_hash()),
+            ("time", last.time.to_string()),
+            ("time_bits", format!("{:016x}", last.time.to_bits())),
+            ("communication_steps", last.communication_steps.to_string()),
+            ("steps", last.steps.to_string()),
             ("dropped", self.dropped().to_string()),
-        ];
-        self.file.metadata("end", owned(end));
+        ]);
+        end.extend(state_hash.map(|hash| ("state_hash".to_owned(), hash)));
+        self.file.metadata("end", end);
         let (counts, failure) = self.file.finish();
         if let (Some(failure), true) = (&failure, self.options.required) {
             return Err(RecordError::Required(failure.clone()));
@@ -421,6 +327,15 @@ impl Recorder {
             dropped: counts.dropped,
             failure,
         })
+    }
+
+    fn remember(&mut self, component: &Component) {
+        let figures = component.statistics();
+        self.last = Last {
+            time: component.time(),
+            communication_steps: figures.communication_steps,
+            steps: figures.steps,
+        };
     }
 
     fn scene(&mut self, component: &Component) {
@@ -475,8 +390,9 @@ impl Recorder {
         component: &Component,
         report: Option<&StepReport>,
     ) -> Result<(), RecordError> {
-        let (time, deterministic) = (component.time(), self.options.deterministic);
-        let step = component.statistics().communication_steps;
+        self.remember(component);
+        let (time, deterministic) = (self.last.time, self.options.deterministic);
+        let step = self.last.communication_steps;
         for (output, channel) in &mut self.channels.outputs {
             let data = convert::gauge(component, output, step, channel.next)?.encode_to_vec();
             write(&mut self.file, deterministic, channel, time, &data);
@@ -528,54 +444,6 @@ impl Recorder {
     }
 }
 
-/// Metadata "run" and "segment" and the attachments: first in the file, so that they survive a crash.
-fn write_preamble(
-    file: &mut LogFile,
-    component: &Component,
-    options: &RecordOptions,
-    segment: u32,
-) -> Result<(), RecordError> {
-    let scene = component.scene();
-    let run = [
-        ("scene", scene.name.clone()),
-        ("title", scene.title.clone()),
-        ("scene_hash", sha256_hex(scene.source.as_bytes())),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("instance", options.instance.clone()),
-        ("seed", scene.numerics.seed.to_string()),
-        ("precision", "f64".to_owned()),
-        ("communication_step", scene.run.step.to_string()),
-        ("deterministic", options.deterministic.to_string()),
-    ];
-    file.metadata("run", owned(run));
-    let begin = [
-        ("number", segment.to_string()),
-        ("reason", options.reason.clone()),
-        ("time", component.time().to_string()),
-    ];
-    file.metadata("segment", owned(begin));
-    let time = nanoseconds(component.time());
-    file.attachment(
-        "scene.toml",
-        "application/toml",
-        time,
-        scene.source.as_bytes(),
-    );
-    for (name, media_type, data) in &options.attachments {
-        file.attachment(name, media_type, time, data);
-    }
-    if has_state(component) {
-        let state = component.save()?;
-        file.attachment("start.state", "application/octet-stream", time, &state);
-    }
-    Ok(())
-}
-
-/// Whether the component is past its start, so that the scene alone does not say what it is.
-fn has_state(component: &Component) -> bool {
-    !matches!(component.mode(), Mode::Instantiated | Mode::Initialization)
-}
-
 fn write(file: &mut LogFile, deterministic: bool, channel: &mut Channel, time: f64, data: &[u8]) {
     let log_time = nanoseconds(time);
     let publish_time = if deterministic {
@@ -589,17 +457,4 @@ fn write(file: &mut LogFile, deterministic: bool, channel: &mut Channel, time: f
     let sequence = channel.next as u32;
     file.message(time, channel.id, sequence, (log_time, publish_time), data);
     channel.next += 1;
-}
-
-fn owned<const N: usize>(pairs: [(&str, String); N]) -> BTreeMap<String, String> {
-    pairs.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
-}
-
-fn sha256_hex(bytes: &[u8]) -> String {
-    let mut hex = String::new();
-    for byte in Sha256::digest(bytes) {
-        // Writing to a String does not fail.
-        let _ = write!(hex, "{byte:02x}");
-    }
-    hex
 }

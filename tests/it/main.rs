@@ -12,6 +12,8 @@ mod contract;
 mod gauges;
 mod json_schema;
 mod python;
+#[cfg(all(feature = "record", feature = "cli"))]
+mod record;
 mod scenes;
 #[path = "../contract/mod.rs"]
 mod suite;

@@ -121,13 +121,16 @@ impl RunLog {
         if let Some(error) = error {
             self.line(component, LogLevel::Error, error)?;
         }
-        match self.recorder.take() {
-            Some(recorder) => {
-                recorder.finish(component, status)?;
-                Ok(())
-            }
-            None => Ok(()),
+        let Some(recorder) = self.recorder.take() else {
+            return Ok(());
+        };
+        let finished = recorder.finish(component, status)?;
+        // A short run meets a full disk only here, when the last bytes are written.
+        if let Some(failure) = finished.failure {
+            let dropped = finished.dropped;
+            eprintln!("warning: {failure}; {dropped} messages are not in the log");
         }
+        Ok(())
     }
 
     fn line(&mut self, component: &Component, level: LogLevel, text: &str) -> Result<(), CliError> {

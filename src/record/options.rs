@@ -1,0 +1,52 @@
+//! What a log shall be, and what became of it.
+
+use super::error::Failure;
+use crate::component::Component;
+use std::path::PathBuf;
+
+/// How a log is written.
+#[derive(Clone, Debug)]
+pub struct RecordOptions {
+    /// Instance in topics, 1 to 64 of `a-z 0-9 _ -`.
+    pub instance: String,
+    /// `publish_time` is simulated time and chunks are closed at communication points: two equal runs then give equal
+    /// bytes. Otherwise `publish_time` is the wall clock and everything is on disk within a second.
+    pub deterministic: bool,
+    /// A failed write is an error of the next call; otherwise the run goes on without its log.
+    pub required: bool,
+    /// Particle snapshots every so many seconds of simulated time, 0 for none [s].
+    pub particles_every: f64,
+    /// Why this file begins: "start", "resumed", "reset", "restored".
+    pub reason: String,
+    /// Files to carry along, such as modelDescription.xml: name, media type, bytes.
+    pub attachments: Vec<(String, String, Vec<u8>)>,
+}
+
+impl RecordOptions {
+    /// What the component's scene asks for: instance and snapshots from the scene, `publish_time` from the wall clock.
+    #[must_use]
+    pub fn of(component: &Component) -> Self {
+        let scene = component.scene();
+        Self {
+            instance: scene.name.clone(),
+            deterministic: false,
+            required: scene.log.required,
+            particles_every: scene.log.particles_every,
+            reason: "start".to_owned(),
+            attachments: Vec::new(),
+        }
+    }
+}
+
+/// What became of a log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    /// The file: under its final name if it is whole, else under the name that ends in `.part`.
+    pub path: Option<PathBuf>,
+    /// Messages in the file.
+    pub messages: u64,
+    /// Messages that are not in it because a write failed.
+    pub dropped: u64,
+    /// The first failure, if there was one.
+    pub failure: Option<Failure>,
+}

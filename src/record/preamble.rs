@@ -1,0 +1,69 @@
+//! What stands first in a log: which scene, version and seed, the scene's text, and the state it starts from.
+
+use super::error::RecordError;
+use super::file::LogFile;
+use super::options::RecordOptions;
+use crate::component::{Component, Mode};
+use crate::wire::convert::nanoseconds;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// Metadata "run" and "segment" and the attachments: first in the file, so that they survive a crash.
+pub(super) fn write_preamble(
+    file: &mut LogFile,
+    component: &Component,
+    options: &RecordOptions,
+    segment: u32,
+) -> Result<(), RecordError> {
+    let scene = component.scene();
+    let run = [
+        ("scene", scene.name.clone()),
+        ("title", scene.title.clone()),
+        ("scene_hash", hex(&scene.fingerprint())),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("instance", options.instance.clone()),
+        ("seed", scene.numerics.seed.to_string()),
+        ("precision", "f64".to_owned()),
+        ("communication_step", scene.run.step.to_string()),
+        ("deterministic", options.deterministic.to_string()),
+    ];
+    file.metadata("run", owned(run));
+    let begin = [
+        ("number", segment.to_string()),
+        ("reason", options.reason.clone()),
+        ("time", component.time().to_string()),
+    ];
+    file.metadata("segment", owned(begin));
+    let time = nanoseconds(component.time());
+    file.attachment(
+        "scene.toml",
+        "application/toml",
+        time,
+        scene.source.as_bytes(),
+    );
+    for (name, media_type, data) in &options.attachments {
+        file.attachment(name, media_type, time, data);
+    }
+    if has_state(component) {
+        let state = component.save()?;
+        file.attachment("start.state", "application/octet-stream", time, &state);
+    }
+    Ok(())
+}
+
+/// Whether the component is past its start, so that the scene alone does not say what it is.
+pub(super) fn has_state(component: &Component) -> bool {
+    !matches!(component.mode(), Mode::Instantiated | Mode::Initialization)
+}
+
+pub(super) fn owned<const N: usize>(pairs: [(&str, String); N]) -> BTreeMap<String, String> {
+    pairs.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut hex, byte| {
+        // Writing to a String does not fail.
+        let _ = write!(hex, "{byte:02x}");
+        hex
+    })
+}
