@@ -284,9 +284,6 @@ impl Protocol {
                 "step: the component runs freely; send pause first",
             ));
         }
-        if component.mode() != Mode::Stepping {
-            return Err(wrong_mode("step", component, "reset or restore first"));
-        }
         let now = super::status::nanoseconds(component.time());
         if let Some(t_ns) = request.t_ns
             && t_ns != now
@@ -296,11 +293,11 @@ impl Protocol {
                 format!("t_ns: found {t_ns}, the component is at {now}; read status and decide"),
             ));
         }
-        // Whole nanoseconds over 1e9 is the nearest f64, the one that `0.01` in a scene file gives: steps by query
-        // and steps of a run are then the same bits. (Times 1e-9 is off by one bit for every other length.)
-        let h = request
-            .dt_ns
-            .map_or(component.scene().run.step, |ns| ns as f64 / 1e9);
+        // The end is a whole number of nanoseconds, made a time once, so that any number of steps does not drift. Over
+        // 1e9 is the nearest f64; times 1e-9 is one bit off for many. The sum saturates far beyond any run.
+        let h = request.dt_ns.map_or(component.scene().run.step, |dt| {
+            now.saturating_add_unsigned(dt) as f64 / 1e9 - component.time()
+        });
         let assignment = Assignment::resolve(component.variables(), &request.inputs)?;
         let rows = match &request.outputs {
             Some(names) => values::rows(component.variables(), Some(names))?,
@@ -313,7 +310,7 @@ impl Protocol {
         let report = match advance(component, h, source(request), observer) {
             Ok(report) => report,
             Err(refusal) => {
-                if component.mode() == Mode::Stepping {
+                if component.mode() != Mode::Failed {
                     // Refused without a step: the inputs go back, too. They were allowed a moment ago.
                     assign(component, &before, "undone", observer)?;
                 }

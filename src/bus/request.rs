@@ -17,9 +17,9 @@ pub struct Request {
     pub req: String,
     /// Who asks; may be empty.
     pub client: String,
-    /// Time at which the client believes the component to be [ns].
+    /// Time at which the client believes the component to be (ns).
     pub t_ns: Option<i64>,
-    /// Length of the step [ns].
+    /// Length of the step (ns).
     pub dt_ns: Option<u64>,
     /// Inputs: name and flat values.
     pub inputs: Vec<(String, Vec<f64>)>,
@@ -110,7 +110,7 @@ impl Request {
     }
 }
 
-/// Longest step [ns]: one hour. Longer is several steps.
+/// Longest step (ns): one hour. Longer is several steps.
 const MAX_DT_NS: u64 = 3_600_000_000_000;
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ impl SetPoint {
     /// Reads a set-point.
     ///
     /// # Errors
-    /// As [`Request::parse`].
+    /// As [`Request::parse`](super::Request::parse).
     pub fn parse(variable: &str, body: &[u8]) -> Result<Self, Refusal> {
         if body.len() > 1 << 20 {
             return Err(Refusal::new(

@@ -14,7 +14,7 @@ pub struct Status {
     pub epoch: u64,
     /// Communication steps done.
     pub step: u64,
-    /// Simulated time [ns].
+    /// Simulated time (ns).
     pub t_ns: i64,
     /// Where it is in its life.
     pub mode: Mode,

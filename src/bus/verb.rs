@@ -101,7 +101,7 @@ impl Verb {
         self.row().3
     }
 
-    /// Longest body [bytes]: room for a state in `restore`, little else.
+    /// Longest body (bytes): room for a state in `restore`, little else.
     #[must_use]
     pub fn max_body(self) -> usize {
         match self {

@@ -108,6 +108,19 @@ fn a_step_by_query_is_a_step_of_the_component() {
 }
 
 #[test]
+fn steps_of_whole_nanoseconds_do_not_drift() {
+    let mut bench = Bench::new();
+    for step in 1..=60_u32 {
+        let body = json!({"req": step.to_string(), "dt_ns": 100_001}).to_string();
+        let t_ns = 100_001 * u64::from(step);
+        assert_eq!(bench.ok("step", &body)["t_ns"], t_ns);
+        // One rounding of t + h, however many steps there were.
+        let exact = t_ns as f64 / 1e9;
+        assert!((bench.component.time() - exact).abs() <= f64::EPSILON * exact);
+    }
+}
+
+#[test]
 fn a_request_sent_twice_is_carried_out_once() {
     let mut bench = Bench::new();
     let first = bench.ok("step", r#"{"req":"c7e1","client":"a","dt_ns":2000000}"#);
@@ -394,7 +407,7 @@ fn terminate_ends_and_only_reading_and_going_back_are_left() {
         "step",
         r#"{"req":"2"}"#,
         "state",
-        "not allowed in mode terminated",
+        "do_step is not allowed in mode Terminated; allowed in Stepping",
     );
     bench.refused(
         "run",
@@ -424,7 +437,12 @@ fn a_step_that_fails_says_so_and_going_back_heals() {
         "step failed",
     );
     assert_eq!(bench.ok("status", "")["mode"], "failed");
-    bench.refused("step", r#"{"req":"2"}"#, "state", "reset or restore first");
+    bench.refused(
+        "step",
+        r#"{"req":"2"}"#,
+        "state",
+        "do_step is not allowed in mode Failed; allowed in Stepping",
+    );
     bench.refused("run", r#"{"req":"3"}"#, "state", "reset or restore first");
     assert!(bench.ok("get", "")["outputs"]["time"].is_number());
     let restore = json!({"req": "4", "state": saved["state"]}).to_string();

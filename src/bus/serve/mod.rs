@@ -35,7 +35,7 @@ pub struct ServeOptions {
     /// Name of the instance, 1 to 64 of `a-z 0-9 _ -`.
     pub instance: String,
     /// Endpoints to listen on (`tcp/HOST:PORT`, port 0 for a free one); empty: those of the configuration file, or
-    /// [`DEFAULT_LISTEN`].
+    /// [`DEFAULT_LISTEN`](crate::bus::DEFAULT_LISTEN).
     pub listen: Vec<String>,
     /// Endpoints to connect to, besides those of the configuration file.
     pub connect: Vec<String>,
