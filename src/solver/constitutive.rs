@@ -10,6 +10,11 @@ use super::{Solver, SolverError};
 /// Shear rates below this count as none [1/s]: far below any that matters, far above rounding.
 const STILL: f64 = 1e-12;
 
+/// Lowest density over the rest density [1]. A flat face that parts from another loses half its support; what lies
+/// lower is corners and single grains. They carry no stress, but volumes m/rho would grow without bound when the
+/// last neighbours leave, and with them every weight.
+const PARTED: f64 = 0.5;
+
 /// Pressure, viscosity and inertial number of one particle.
 struct Response {
     pressure: f64,
@@ -34,7 +39,8 @@ impl<const D: usize> Solver<D> {
                     position: crate::solver::three(&grains.position[i]),
                 });
             }
-            grains.density[i] = rho;
+            let parted = PARTED * self.materials[grains.phase[i] as usize].rest_density();
+            grains.density[i] = rho.max(parted);
             let rate = k.correction * k.shear;
             grains.relaxed_shear[i] += relax * (rate - grains.relaxed_shear[i]);
         }
