@@ -105,7 +105,7 @@ impl Verb {
     #[must_use]
     pub fn max_body(self) -> usize {
         match self {
-            Self::Restore => 256 << 20,
+            Self::Restore => 64 << 20,
             _ => 1 << 20,
         }
     }
