@@ -134,8 +134,8 @@ impl<const D: usize> Grains<D> {
             .iter()
             .zip(&self.drained)
             .filter(|(_, d)| !**d)
-            .map(|(m, _)| m)
-            .sum()
+            // Not `sum`: it begins at -0, the mass of no particles is 0.
+            .fold(0.0, |sum, (m, _)| sum + m)
     }
 }
 
