@@ -15,6 +15,7 @@ mod fmu;
 mod info;
 mod quantity;
 mod run;
+mod schema;
 #[cfg(feature = "bus")]
 mod serve;
 mod stop;
@@ -49,6 +50,8 @@ enum Command {
     /// Serve a case on Zenoh: gauges out, set-points and requests in
     #[cfg(feature = "bus")]
     Serve(serve::Args),
+    /// Print the JSON Schema of scene files
+    Schema(schema::Args),
 }
 
 /// Reads the command line, does what it says and returns the exit code (see `sandgate --help`).
@@ -79,6 +82,7 @@ fn dispatch(command: &Command) -> Result<(), CliError> {
         Command::Fmu(args) => fmu::run(args),
         #[cfg(feature = "bus")]
         Command::Serve(args) => serve::run(args),
+        Command::Schema(args) => schema::run(args),
     }
 }
 

@@ -98,6 +98,12 @@ impl Folder {
         }
     }
 
+    /// Whether `path` names this folder.
+    pub(super) fn is(&self, path: &Path) -> bool {
+        let real = |p: &Path| std::fs::canonicalize(p).ok();
+        real(path).is_some_and(|path| real(&self.path) == Some(path))
+    }
+
     /// The folder.
     pub(super) fn path(&self) -> &Path {
         &self.path

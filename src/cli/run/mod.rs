@@ -91,10 +91,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         None => None,
     };
     let component = session::ready(&scene, resumed.as_deref(), &plan)?;
-    let continued = match (&args.resume, &args.out) {
-        (Some(file), None) => folder::Folder::of_checkpoint(file),
-        _ => None,
-    };
+    let continued = args
+        .resume
+        .as_deref()
+        .and_then(folder::Folder::of_checkpoint)
+        .filter(|own| args.out.as_ref().is_none_or(|out| own.is(out)));
     let folder = match (continued, &args.out) {
         (Some(folder), _) => folder,
         (None, Some(path)) => folder::Folder::named(path, args.force)?,
