@@ -5,8 +5,11 @@
     reason = "in a test, a failed unwrap is a failed test"
 )]
 
+mod architecture;
 #[cfg(all(feature = "bus", feature = "cli"))]
 mod bus;
+#[cfg(feature = "cli")]
+mod cli;
 mod component;
 mod contract;
 mod gauges;

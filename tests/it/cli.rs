@@ -1,0 +1,561 @@
+//! The built program from outside: exit codes, messages, the files of a run, Ctrl-C, kill and resume to the bit.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn small_silo() -> String {
+    scene("small_silo")
+}
+
+fn scene(name: &str) -> String {
+    let path = root().join("tests/scenes").join(format!("{name}.toml"));
+    path.to_str().unwrap().to_owned()
+}
+
+/// The program in a scratch folder, so that a default `out/` never lands in the source tree.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+        }
+    }
+
+    fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_sandgate"));
+        command.args(args).current_dir(self.folder.path());
+        command
+    }
+
+    fn call(&self, args: &[&str]) -> Output {
+        self.command(args).output().unwrap()
+    }
+
+    /// Runs and demands success; answers standard output.
+    fn ok(&self, args: &[&str]) -> String {
+        let output = self.call(args);
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{args:?}: {}",
+            stderr(&output)
+        );
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Runs and demands a refusal with this code and these words.
+    fn refused(&self, args: &[&str], code: i32, words: &[&str]) {
+        let output = self.call(args);
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(code), "{args:?}: {text}");
+        for word in words {
+            assert!(text.contains(word), "{args:?}: no {word:?} in: {text}");
+        }
+        assert!(!text.contains("panicked"), "{args:?}: {text}");
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn summary(&self, folder: &str) -> Value {
+        let text = std::fs::read_to_string(self.path(folder).join("summary.json")).unwrap();
+        serde_json::from_str(&text).unwrap()
+    }
+
+    fn hash(&self, folder: &str) -> String {
+        self.summary(folder)["state_sha256"]
+            .as_str()
+            .unwrap()
+            .to_owned()
+    }
+
+    fn table(&self, folder: &str) -> String {
+        std::fs::read_to_string(self.path(folder).join("gauges.csv")).unwrap()
+    }
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Columns of `gauges.csv` by name.
+fn columns(table: &str) -> BTreeMap<String, Vec<f64>> {
+    let mut lines = table.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let mut columns: BTreeMap<String, Vec<f64>> = names
+        .iter()
+        .map(|name| ((*name).to_owned(), Vec::new()))
+        .collect();
+    for line in lines {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        assert_eq!(cells.len(), names.len(), "{line}");
+        for (name, cell) in names.iter().zip(cells) {
+            columns.get_mut(*name).unwrap().push(cell);
+        }
+    }
+    columns
+}
+
+#[test]
+fn help_names_every_subcommand_and_exit_code() {
+    let desk = Desk::new();
+    let help = desk.ok(&["--help"]);
+    for word in ["run", "info", "fmu", "schema", "Exit codes", "130"] {
+        assert!(help.contains(word), "no {word} in: {help}");
+    }
+    let help = desk.ok(&["run", "--help"]);
+    for word in [
+        "--until",
+        "--out",
+        "--threads",
+        "--checkpoint-every",
+        "--resume",
+        "--step",
+        "--no-log",
+        "--force",
+        "gauges.csv",
+        "summary.json",
+        "Ctrl-C",
+    ] {
+        assert!(help.contains(word), "no {word} in: {help}");
+    }
+    assert!(desk.ok(&["--version"]).contains(env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn wrong_use_is_refused_with_code_2() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    desk.refused(&[], 2, &["Usage"]);
+    desk.refused(&["fly"], 2, &["unrecognized subcommand 'fly'"]);
+    desk.refused(&["run"], 2, &["<CASE>"]);
+    desk.refused(
+        &["run", &silo, "--until", "2 mm"],
+        2,
+        &["a length", "a time", "ms"],
+    );
+    desk.refused(&["run", &silo, "--until", "0 s"], 2, &["more than 0 s"]);
+    desk.refused(
+        &["run", &silo, "--step", "soon"],
+        2,
+        &["not a decimal number"],
+    );
+    desk.refused(&["run", &silo, "--threads", "1000"], 2, &["1000", "256"]);
+    desk.refused(&["run", &silo, "--force"], 2, &["--out"]);
+    desk.refused(&["fmu", &silo, "--fmi", "1"], 2, &["2..=3"]);
+    assert!(!desk.path("out").exists(), "a refused run left a folder");
+}
+
+#[test]
+fn scenes_that_are_missing_or_wrong_are_refused() {
+    let desk = Desk::new();
+    desk.refused(
+        &["run", "nowhere.toml"],
+        5,
+        &["nowhere.toml", "No such file", "cases/"],
+    );
+    let text = std::fs::read_to_string(small_silo()).unwrap();
+    let bad = text.replace("spacing = \"4 mm\"", "spacing = \"-4 mm\"\nspeed = 3");
+    std::fs::write(desk.path("bad.toml"), bad).unwrap();
+    for command in ["run", "info"] {
+        desk.refused(
+            &[command, "bad.toml"],
+            3,
+            &[
+                "bad.toml:",
+                "numerics.spacing",
+                "numerics.speed",
+                "allowed",
+                "2 problems",
+            ],
+        );
+    }
+    assert!(!desk.path("out").exists(), "a refused run left a folder");
+}
+
+#[test]
+fn a_run_leaves_every_file_and_keeps_all_mass() {
+    let desk = Desk::new();
+    let shown = desk.ok(&["run", &small_silo(), "--threads", "2"]);
+    for word in [
+        "small_silo finished at t = 0.2 s",
+        "error 0",
+        "gauge.level.depth",
+        "out/small_silo",
+    ] {
+        assert!(shown.contains(word), "no {word:?} in: {shown}");
+    }
+    let out = "out/small_silo";
+    let summary = desk.summary(out);
+    assert_eq!(summary["made_by"], "sandgate run");
+    assert_eq!(summary["status"], "finished");
+    assert_eq!(summary["time"], 0.2);
+    assert_eq!(summary["communication_steps"], 40);
+    assert_eq!(summary["threads"], 2);
+    assert_eq!(summary["mass"]["error"], 0.0);
+    assert!(
+        summary["mass"]["outflow"].as_f64().unwrap() > 0.0,
+        "nothing came out: {}",
+        summary["mass"]
+    );
+    assert!(summary["steps"].as_u64().unwrap() >= 40);
+    assert!(summary["cpu_s"].as_f64().unwrap() > 0.0);
+    assert!(summary["wall_s"].as_f64().unwrap() > 0.0);
+    assert_eq!(summary["state_sha256"].as_str().unwrap().len(), 64);
+
+    let columns = columns(&desk.table(out));
+    assert_eq!(columns["time"].len(), 41);
+    assert_eq!(columns["time"][40], 0.2);
+    for (row, &time) in columns["time"].iter().enumerate() {
+        assert!(
+            (time - 0.005 * row as f64).abs() < 1e-12,
+            "row {row} is at {time}"
+        );
+        assert_eq!(columns["mass.error"][row], 0.0, "mass at t = {time}");
+    }
+    // The schedule: closed until 20 ms, open from 60 ms to 150 ms.
+    assert_eq!(columns["gate.main.opening"][4], 0.0);
+    assert_eq!(columns["gate.main.opening"][20], 1.0);
+    let variables = summary["variables"].as_object().unwrap();
+    for (name, values) in columns.iter().filter(|(name, _)| *name != "time") {
+        let entry = &variables[name];
+        assert_eq!(entry["final"].as_f64(), values.last().copied(), "{name}");
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        assert_eq!(entry["min"].as_f64(), Some(least), "{name}");
+    }
+    assert_eq!(
+        variables["gauge.surface.depth"]["final"]
+            .as_array()
+            .unwrap()
+            .len(),
+        4
+    );
+
+    let log = std::fs::read(desk.path(out).join("run.mcap")).unwrap();
+    assert!(log.starts_with(b"\x89MCAP0\r\n") && log.ends_with(b"\x89MCAP0\r\n"));
+    let picture = std::fs::read_to_string(desk.path(out).join("gauges.svg")).unwrap();
+    for word in [
+        "<svg",
+        "gauge.level.depth",
+        "gate.main.opening",
+        "time [s]",
+        "</svg>",
+    ] {
+        assert!(picture.contains(word), "no {word} in the picture");
+    }
+    assert!(desk.path(out).join("checkpoint.state").exists());
+    let names: Vec<_> = std::fs::read_dir(desk.path(out))
+        .unwrap()
+        .map(|e| e.unwrap().file_name())
+        .collect();
+    assert_eq!(names.len(), 5, "left behind: {names:?}");
+}
+
+#[test]
+fn earlier_results_are_never_overwritten_unasked() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    let short = ["--until", "10 ms", "--no-log"];
+    let run = |more: &[&'static str]| -> Vec<&str> { [&["run", &silo][..], &short, more].concat() };
+    desk.ok(&run(&[]));
+    desk.ok(&run(&[]));
+    assert!(desk.path("out/small_silo/summary.json").exists());
+    assert!(desk.path("out/small_silo-2/summary.json").exists());
+    assert!(
+        !desk.path("out/small_silo/run.mcap").exists(),
+        "--no-log wrote a log"
+    );
+
+    desk.ok(&run(&["--out", "mine"]));
+    std::fs::write(desk.path("mine/notes.txt"), "precious").unwrap();
+    std::fs::write(desk.path("mine/run-7.mcap"), "old segment").unwrap();
+    let before = desk.summary("mine");
+    desk.refused(
+        &run(&["--out", "mine"]),
+        2,
+        &["mine holds an earlier run", "--force"],
+    );
+    assert_eq!(desk.summary("mine"), before);
+    desk.ok(&run(&["--out", "mine", "--force"]));
+    assert!(desk.path("mine/notes.txt").exists());
+    assert!(!desk.path("mine/run-7.mcap").exists());
+
+    std::fs::create_dir(desk.path("other")).unwrap();
+    std::fs::write(desk.path("other/notes.txt"), "precious").unwrap();
+    for more in [&["--out", "other"][..], &["--out", "other", "--force"]] {
+        desk.refused(&run(more), 2, &["other is not empty", "notes.txt"]);
+    }
+    desk.refused(&run(&["--out", "other/notes.txt"]), 5, &["notes.txt"]);
+}
+
+#[test]
+fn results_do_not_depend_on_threads_or_on_the_log() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    let run = |more: &[&str]| desk.ok(&[&["run", &silo, "--until", "60 ms"][..], more].concat());
+    run(&["--out", "one", "--threads", "1"]);
+    run(&["--out", "two", "--threads", "2", "--no-log"]);
+    assert_eq!(desk.hash("one"), desk.hash("two"));
+    assert_eq!(desk.table("one"), desk.table("two"));
+}
+
+#[test]
+fn a_resumed_run_ends_with_the_bits_of_an_unbroken_one() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    desk.ok(&["run", &silo, "--out", "whole", "--until", "0.1 s"]);
+    desk.ok(&[
+        "run",
+        &silo,
+        "--out",
+        "parts",
+        "--until",
+        "55 ms",
+        "--threads",
+        "1",
+    ]);
+    assert_ne!(desk.hash("whole"), desk.hash("parts"));
+    let state = "parts/checkpoint.state";
+    desk.refused(
+        &["run", &silo, "--resume", state, "--until", "50 ms"],
+        2,
+        &["--until"],
+    );
+    desk.ok(&["run", &silo, "--resume", state, "--until", "0.1 s"]);
+    assert_eq!(desk.hash("whole"), desk.hash("parts"));
+    assert_eq!(desk.table("whole"), desk.table("parts"));
+    let summary = desk.summary("parts");
+    assert_eq!(summary["communication_steps"], 20);
+    let parts = summary["parts"].as_array().unwrap();
+    let logs: Vec<_> = parts
+        .iter()
+        .map(|part| part["log"].as_str().unwrap())
+        .collect();
+    assert_eq!(logs, ["run.mcap", "run-2.mcap"]);
+    assert_eq!(parts[1]["from"], 0.055);
+    for log in logs {
+        assert!(desk.path("parts").join(log).exists());
+    }
+    // Naming the same folder is going on, too.
+    let again = ["--resume", state, "--out", "./parts", "--until", "0.105 s"];
+    desk.ok(&[&["run", &silo][..], &again].concat());
+    assert_eq!(desk.summary("parts")["parts"].as_array().unwrap().len(), 3);
+    let summary = desk.summary("parts");
+    // Into another folder: only what was computed there, and the first folder stays as it was.
+    desk.ok(&[
+        "run", &silo, "--resume", state, "--until", "0.11 s", "--out", "else",
+    ]);
+    assert_eq!(columns(&desk.table("else"))["time"], [0.105, 0.11]);
+    assert_eq!(desk.summary("parts"), summary);
+}
+
+#[test]
+fn states_that_do_not_fit_are_refused() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    desk.ok(&["run", &silo, "--out", "run", "--until", "10 ms"]);
+    let state = desk.path("run/checkpoint.state");
+    let good = std::fs::read(&state).unwrap();
+    desk.refused(
+        &["run", &silo, "--resume", "nowhere.state"],
+        5,
+        &["nowhere.state"],
+    );
+    let mut flipped = good.clone();
+    let middle = flipped.len() / 2;
+    flipped[middle] ^= 4;
+    for bytes in [&flipped[..], &good[..good.len() / 2], b"", b"hello"] {
+        std::fs::write(&state, bytes).unwrap();
+        desk.refused(
+            &["run", &silo, "--resume", "run/checkpoint.state"],
+            5,
+            &["saved state refused"],
+        );
+    }
+    std::fs::write(&state, good).unwrap();
+    let text = std::fs::read_to_string(&silo)
+        .unwrap()
+        .replace("6.4 cm", "6.0 cm");
+    std::fs::write(desk.path("other.toml"), text).unwrap();
+    desk.refused(
+        &["run", "other.toml", "--resume", "run/checkpoint.state"],
+        5,
+        &["scene"],
+    );
+    assert_eq!(
+        desk.summary("run")["status"],
+        "finished",
+        "a refused resume changed the folder"
+    );
+}
+
+/// A run that is far from its end, already past its first rows.
+fn running(desk: &Desk, args: &[&str], out: &str, wanted: &str) -> Child {
+    let mut child = desk
+        .command(args)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let started = Instant::now();
+    while !desk.path(out).join(wanted).exists() {
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "the run ended before it could be stopped"
+        );
+        assert!(
+            started.elapsed() < Duration::from_secs(60),
+            "no {wanted} after a minute"
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+#[cfg(unix)]
+fn signal(child: &Child, name: &str) {
+    // The shell's own `kill`: the program of that name is not everywhere.
+    let line = format!("kill {name} {}", child.id());
+    let status = Command::new("sh").args(["-c", &line]).status().unwrap();
+    assert!(status.success());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_saves_and_says_how_to_go_on() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    let args = [
+        "run", &silo, "--out", "run", "--until", "1000 s", "--step", "2 ms",
+    ];
+    let child = running(&desk, &args, "run", "summary.json");
+    signal(&child, "-INT");
+    let output = child.wait_with_output().unwrap();
+    let text = stderr(&output);
+    assert_eq!(output.status.code(), Some(130), "{text}");
+    let command =
+        format!("sandgate run {silo} --until 1000 --step 0.002 --resume run/checkpoint.state");
+    assert!(text.contains(&command), "no {command:?} in: {text}");
+    let summary = desk.summary("run");
+    assert_eq!(summary["status"], "interrupted");
+    let log = std::fs::read(desk.path("run/run.mcap")).unwrap();
+    assert!(log.ends_with(b"\x89MCAP0\r\n"), "the log was not finished");
+
+    let reached = summary["time"].as_f64().unwrap();
+    let until = format!("{}", reached + 0.02);
+    desk.ok(&[
+        "run",
+        &silo,
+        "--resume",
+        "run/checkpoint.state",
+        "--step",
+        "2 ms",
+        "--until",
+        &until,
+    ]);
+    desk.ok(&[
+        "run", &silo, "--out", "whole", "--step", "2 ms", "--until", &until,
+    ]);
+    assert_eq!(desk.hash("run"), desk.hash("whole"));
+    assert_eq!(desk.table("run"), desk.table("whole"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_killed_run_goes_on_from_its_last_checkpoint() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    let args = [
+        "run",
+        &silo,
+        "--out",
+        "run",
+        "--until",
+        "1000 s",
+        "--checkpoint-every",
+        "20 ms",
+    ];
+    let child = running(&desk, &args, "run", "checkpoint.state");
+    signal(&child, "-KILL");
+    child.wait_with_output().unwrap();
+    let summary = desk.summary("run");
+    assert_eq!(summary["status"], "running");
+    let until = format!("{}", summary["time"].as_f64().unwrap() + 0.1);
+    desk.ok(&[
+        "run",
+        &silo,
+        "--resume",
+        "run/checkpoint.state",
+        "--until",
+        &until,
+    ]);
+    desk.ok(&["run", &silo, "--out", "whole", "--until", &until]);
+    assert_eq!(desk.hash("run"), desk.hash("whole"));
+    assert_eq!(desk.table("run"), desk.table("whole"));
+}
+
+#[test]
+fn a_failed_step_keeps_what_was_computed_before() {
+    let desk = Desk::new();
+    desk.refused(
+        &["run", &scene("no_floor"), "--out", "run"],
+        4,
+        &["step failed", "particle"],
+    );
+    let summary = desk.summary("run");
+    assert_eq!(summary["status"], "failed");
+    assert!(summary["error"].as_str().unwrap().contains("step failed"));
+    let columns = columns(&desk.table("run"));
+    assert!(columns["time"].len() > 1, "no row before the failure");
+    assert_eq!(columns["time"].last().copied(), summary["time"].as_f64());
+    assert!(desk.path("run/run.mcap").exists());
+}
+
+#[test]
+fn info_tells_what_a_case_holds_costs_and_leaves_out() {
+    let text = Desk::new().ok(&["info", &small_silo()]);
+    for word in [
+        "small_silo",
+        "320 of spacing 0.004 m",
+        "body     fill: 320 particles of beads",
+        "wall     left: chain of 3 points, no slip",
+        "gate     main",
+        "outflow  drain",
+        "gauge    surface: depth at 4 places",
+        "left out   the third dimension",
+        "inflows",
+        "acoustic bound",
+        "measured",
+        "expected   0.2 s simulated = 40 communication steps",
+        "cost",
+        "particle and step",
+        "saved state",
+        "gate.main.opening",
+        "input",
+    ] {
+        assert!(text.contains(word), "no {word:?} in: {text}");
+    }
+}
+
+#[test]
+fn schema_is_json_and_a_reader_may_go_away() {
+    let desk = Desk::new();
+    let schema: Value = serde_json::from_str(&desk.ok(&["schema"])).unwrap();
+    assert!(schema["properties"]["numerics"].is_object(), "{schema}");
+    let mut child = desk
+        .command(&["schema"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(stderr(&output), "");
+    assert_eq!(output.status.code(), Some(0));
+}
