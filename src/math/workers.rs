@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 use std::ops::Range;
+use std::thread::JoinHandle;
 
 use super::sum::chunks;
 
@@ -11,7 +12,50 @@ pub const CHUNK: usize = 128;
 /// Runs sweeps over rows on a set number of threads. Results never depend on that number.
 #[derive(Debug, Default)]
 pub struct Workers {
+    pool: Option<Pool>,
+}
+
+/// A pool whose threads have ended when it is gone: a library may be unloaded right after that.
+#[derive(Debug)]
+struct Pool {
     pool: Option<rayon::ThreadPool>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Pool {
+    /// `None` if the machine cannot start so many threads.
+    fn new(count: usize) -> Option<Self> {
+        let mut threads = Vec::new();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(count)
+            .spawn_handler(|worker| {
+                threads.push(std::thread::Builder::new().spawn(|| worker.run())?);
+                Ok(())
+            })
+            .build()
+            .ok();
+        let pool = Self { pool, threads };
+        pool.pool.is_some().then_some(pool)
+    }
+
+    /// Runs `f` in the pool: sweeps inside it share its threads, never the process-wide pool.
+    fn run<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
+        match &self.pool {
+            Some(pool) => pool.install(f),
+            None => f(),
+        }
+    }
+}
+
+impl Drop for Pool {
+    fn drop(&mut self) {
+        // Dropping rayon's pool only asks its threads to end.
+        drop(self.pool.take());
+        for thread in self.threads.drain(..) {
+            // A worker that panicked has ended too, and the panic went to the caller of the sweep.
+            let _ = thread.join();
+        }
+    }
 }
 
 impl Workers {
@@ -21,26 +65,23 @@ impl Workers {
         if threads == 1 {
             return Self { pool: None };
         }
+        let all = || std::thread::available_parallelism().map_or(1, usize::from);
+        let count = if threads == 0 { all() } else { threads };
         // A machine that cannot start threads still gets the same results from the calling thread.
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .ok();
+        let pool = Pool::new(count);
         Self { pool }
     }
 
     /// Number of threads at work.
     #[must_use]
     pub fn threads(&self) -> usize {
-        self.pool
-            .as_ref()
-            .map_or(1, rayon::ThreadPool::current_num_threads)
+        self.pool.as_ref().map_or(1, |pool| pool.threads.len())
     }
 
     /// Runs `f` where sweeps inside it use the pool.
     pub fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
         match &self.pool {
-            Some(pool) => pool.install(f),
+            Some(pool) => pool.run(f),
             None => f(),
         }
     }
@@ -49,10 +90,12 @@ impl Workers {
     pub fn each<T: Send>(&self, out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
         match &self.pool {
             None => out.iter_mut().enumerate().for_each(|(i, o)| f(i, o)),
-            Some(_) => out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, part)| {
-                for (k, o) in part.iter_mut().enumerate() {
-                    f(c * CHUNK + k, o);
-                }
+            Some(pool) => pool.run(|| {
+                out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, part)| {
+                    for (k, o) in part.iter_mut().enumerate() {
+                        f(c * CHUNK + k, o);
+                    }
+                });
             }),
         }
     }
@@ -70,11 +113,13 @@ impl Workers {
                     f(b, c * CHUNK, part);
                 }
             }
-            Some(_) => blocks
-                .par_iter_mut()
-                .zip(out.par_chunks_mut(CHUNK))
-                .enumerate()
-                .for_each(|(c, (b, part))| f(b, c * CHUNK, part)),
+            Some(pool) => pool.run(|| {
+                blocks
+                    .par_iter_mut()
+                    .zip(out.par_chunks_mut(CHUNK))
+                    .enumerate()
+                    .for_each(|(c, (b, part))| f(b, c * CHUNK, part));
+            }),
         }
     }
 
@@ -91,11 +136,13 @@ impl Workers {
                     f(b, c * CHUNK, part);
                 }
             }
-            Some(_) => blocks
-                .par_iter()
-                .zip(out.par_chunks_mut(CHUNK))
-                .enumerate()
-                .for_each(|(c, (b, part))| f(b, c * CHUNK, part)),
+            Some(pool) => pool.run(|| {
+                blocks
+                    .par_iter()
+                    .zip(out.par_chunks_mut(CHUNK))
+                    .enumerate()
+                    .for_each(|(c, (b, part))| f(b, c * CHUNK, part));
+            }),
         }
     }
 
@@ -105,11 +152,13 @@ impl Workers {
         let range = |c: usize| c * CHUNK..((c + 1) * CHUNK).min(n);
         match &self.pool {
             None => (0..chunks(n)).fold(0.0, |s, c| s + f(range(c))),
-            Some(_) => {
-                let parts: Vec<f64> = (0..chunks(n))
-                    .into_par_iter()
-                    .map(|c| f(range(c)))
-                    .collect();
+            Some(pool) => {
+                let parts: Vec<f64> = pool.run(|| {
+                    (0..chunks(n))
+                        .into_par_iter()
+                        .map(|c| f(range(c)))
+                        .collect()
+                });
                 parts.iter().fold(0.0, |s, v| s + v)
             }
         }
@@ -130,5 +179,30 @@ mod tests {
         };
         assert_eq!(sum(1), sum(2));
         assert_eq!(sum(1), sum(7));
+    }
+
+    #[test]
+    fn sweeps_use_threads_of_their_own_also_outside_install() {
+        let workers = Workers::new(3);
+        let mut seen = vec![0; 10 * CHUNK];
+        workers.each(&mut seen, |_, threads| {
+            *threads = rayon::current_num_threads()
+        });
+        assert_eq!(workers.threads(), 3);
+        assert!(seen.iter().all(|threads| *threads == 3));
+    }
+
+    #[test]
+    fn no_thread_outlives_its_workers() {
+        let ended = std::sync::Arc::new(());
+        let workers = Workers::new(3);
+        if let Some(pool) = workers.pool.as_ref().and_then(|pool| pool.pool.as_ref()) {
+            // Each thread holds the mark until its thread-local storage goes, which is the last thing it does.
+            thread_local!(static MARK: std::cell::RefCell<Option<std::sync::Arc<()>>> = const { std::cell::RefCell::new(None) });
+            pool.broadcast(|_| MARK.set(Some(ended.clone())));
+        }
+        assert_eq!(std::sync::Arc::strong_count(&ended), 4);
+        drop(workers);
+        assert_eq!(std::sync::Arc::strong_count(&ended), 1);
     }
 }
