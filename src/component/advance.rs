@@ -9,6 +9,9 @@ use super::{Component, Error, Mode, StepReport};
 /// many seconds below 1 s) is a mistake.
 const TIME_SLACK: f64 = 1e-9;
 
+/// A slope of (1 - x) / h reaches 1 only but for rounding; more than this share of the range beyond it is a mistake.
+const SLOPE_SLACK: f64 = 1e-9;
+
 /// Whether two times are the same but for an orchestrator's rounding.
 fn is_same_time(a: f64, b: f64) -> bool {
     (a - b).abs() <= TIME_SLACK * b.abs().max(1.0)
@@ -90,7 +93,7 @@ impl Component {
         }
     }
 
-    /// Inputs stay in range over the step.
+    /// Inputs stay in range over the step, but for the rounding of the slope.
     fn check_ramps(&self, h: f64) -> Result<(), Error> {
         let inputs = &self.life.inputs;
         let openings = inputs.gate_opening.iter().zip(&self.scene.gates);
@@ -99,7 +102,8 @@ impl Component {
         let rates = rates.map(|(ramp, i)| (ramp, format!("inflow.{}.rate", i.name), i.max_rate));
         for (ramp, name, most) in openings.chain(rates) {
             let reached = ramp.at(h);
-            if ramp.slope != 0.0 && !(0.0..=most).contains(&reached) {
+            let slack = SLOPE_SLACK * most;
+            if ramp.slope != 0.0 && !(-slack..=most + slack).contains(&reached) {
                 return Err(Error::BadArgument {
                     call: "do_step",
                     what: format!("{name} at the end of the step, by its slope {}", ramp.slope),
@@ -111,18 +115,23 @@ impl Component {
         Ok(())
     }
 
-    /// Inputs hold the value they reached; slopes were for one step.
+    /// Inputs hold the value they reached, inside their range; slopes were for one step.
     fn hold_inputs(&mut self, h: f64) {
+        let hold = |ramp: &mut Ramp, most: f64| {
+            if ramp.slope != 0.0 {
+                *ramp = Ramp {
+                    value: ramp.at(h).clamp(0.0, most),
+                    slope: 0.0,
+                };
+            }
+        };
         let inputs = &mut self.life.inputs;
-        for ramp in inputs
+        inputs
             .gate_opening
             .iter_mut()
-            .chain(&mut inputs.inflow_rate)
-        {
-            *ramp = Ramp {
-                value: ramp.at(h),
-                slope: 0.0,
-            };
+            .for_each(|ramp| hold(ramp, 1.0));
+        for (ramp, inflow) in inputs.inflow_rate.iter_mut().zip(&self.scene.inflows) {
+            hold(ramp, inflow.max_rate);
         }
     }
 }
