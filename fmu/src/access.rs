@@ -1,6 +1,6 @@
 //! Values between the typed functions of the standards and the component's plain f64.
 
-use sandgate::component::{Component, ValueKind};
+use sandgate::component::{Component, Error, ValueKind, Variable};
 
 use crate::fault::Fault;
 use crate::guard::{Out, Plain};
@@ -108,7 +108,7 @@ pub(crate) fn get<V: Value, C: Plain>(
     count: usize,
     make: impl Fn(V) -> C,
 ) -> Result<(), Fault> {
-    check(&instance.component, references, V::KIND, count)?;
+    check(&instance.component, "get", references, V::KIND, count)?;
     instance.values.clear();
     instance.values.resize(count, 0.0);
     instance.component.get(references, &mut instance.values)?;
@@ -127,7 +127,13 @@ pub(crate) fn set<V: Value, C: Copy>(
     values: &[C],
     make: impl Fn(C) -> Result<V, String>,
 ) -> Result<(), Fault> {
-    check(&instance.component, references, V::KIND, values.len())?;
+    check(
+        &instance.component,
+        "set",
+        references,
+        V::KIND,
+        values.len(),
+    )?;
     let entered: Result<Vec<f64>, String> = values
         .iter()
         .map(|value| make(*value).and_then(V::enter))
@@ -148,20 +154,15 @@ pub(crate) fn no_variable_of_type(name: &str, count: usize) -> Result<(), Fault>
 
 fn check(
     component: &Component,
+    call: &'static str,
     references: &[u32],
     kind: ValueKind,
     count: usize,
 ) -> Result<(), Fault> {
-    let table = component.variables();
-    let mut expected = 0;
     for reference in references {
-        let Some(row) = table.by_reference(*reference) else {
-            return Err(Fault::border(format!(
-                "value reference {reference} is unknown; modelDescription.xml has 0 to {}",
-                table.rows().len() - 1
-            )));
-        };
-        if row.kind != kind {
+        if let Some(row) = component.variables().by_reference(*reference)
+            && row.kind != kind
+        {
             return Err(Fault::border(format!(
                 "variable {} is {}; this call is for {} variables",
                 row.name,
@@ -169,14 +170,33 @@ fn check(
                 kind_name(kind)
             )));
         }
-        expected += row.len();
     }
-    if expected != count {
-        return Err(Fault::border(format!(
-            "found room for {count} values, these variables have {expected}"
-        )));
+    check_length(component, call, references, count)
+}
+
+/// Refuses a count that is not the variables', before room is made for what a caller claims. Unknown references are
+/// left to the component.
+pub(crate) fn check_length(
+    component: &Component,
+    call: &'static str,
+    references: &[u32],
+    count: usize,
+) -> Result<(), Fault> {
+    let rows = references
+        .iter()
+        .map(|r| component.variables().by_reference(*r));
+    let lengths: Option<Vec<usize>> = rows.map(|row| row.map(Variable::len)).collect();
+    match lengths.map(|lengths| lengths.iter().sum::<usize>()) {
+        Some(expected) if expected != count => Err(Fault::Component(Error::BadArgument {
+            call,
+            what: "number of values".to_owned(),
+            found: count.to_string(),
+            allowed: format!("{expected}, as many as these variables have"),
+        })),
+        Some(_) => Ok(()),
+        // The component names the unknown reference; it takes no values for it.
+        None => Ok(component.get(references, &mut [])?),
     }
-    Ok(())
 }
 
 fn kind_name(kind: ValueKind) -> &'static str {

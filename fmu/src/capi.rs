@@ -5,6 +5,7 @@ use std::ffi::{CString, c_char};
 use sandgate::component::{Causality, Mode, Start, ValueKind, Variability, Variable};
 use sandgate::scene::{self, Scene, SceneErrors};
 
+use crate::access::check_length;
 use crate::fault::Fault;
 use crate::guard::{CLedger, CStepReport, CVariable, Handle, In, Need, Out, Text, shield};
 use crate::instance::Instance;
@@ -248,16 +249,9 @@ pub(crate) extern "C" fn sandgate_get(
     code(instance.call("sandgate_get", Need::Sound, |i| {
         let references = references.slice(reference_count, "references")?;
         values.check(value_count, "values")?;
-        let known = |r: &u32| {
-            i.component
-                .variables()
-                .by_reference(*r)
-                .map_or(0, Variable::len)
-        };
-        let expected: usize = references.iter().map(known).sum();
-        // Room is made for what the variables have, not for what a caller claims.
+        check_length(&i.component, "get", references, value_count)?;
         i.values.clear();
-        i.values.resize(value_count.min(expected + 1), 0.0);
+        i.values.resize(value_count, 0.0);
         i.component.get(references, &mut i.values)?;
         values.write(&i.values, "values")
     }))

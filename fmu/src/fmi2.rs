@@ -87,10 +87,14 @@ pub(crate) extern "C" fn fmi2SetupExperiment(
     c.call("fmi2SetupExperiment", Need::Sound, |i| {
         i.expect_mode("fmi2SetupExperiment", Mode::Instantiated)?;
         let stop = (stop_defined != 0).then_some(stop);
-        if !start.is_finite() || stop.is_some_and(|stop| !stop.is_finite() || stop < start) {
-            return Err(Fault::border(format!(
-                "found start {start} and stop {stop:?}, allowed finite times with stop not before start"
-            )));
+        if !start.is_finite() {
+            return Err(bad_time("start time", start, "a finite time".to_owned()));
+        }
+        if let Some(stop) = stop
+            && !(stop.is_finite() && stop > start)
+        {
+            let allowed = format!("a finite time after {start} s, the start");
+            return Err(bad_time("stop time", stop, allowed));
         }
         i.experiment = Experiment { start, stop };
         Ok(())
@@ -311,12 +315,22 @@ pub(crate) extern "C" fn fmi2GetDirectionalDerivative(
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2SetRealInputDerivatives(
     c: Handle,
-    _vr: In<u32>,
-    _n: usize,
-    _order: In<i32>,
-    _value: In<f64>,
+    vr: In<u32>,
+    n: usize,
+    order: In<i32>,
+    value: In<f64>,
 ) -> Status {
-    c.not_provided("fmi2SetRealInputDerivatives", "canInterpolateInputs")
+    c.call("fmi2SetRealInputDerivatives", Need::Sound, |i| {
+        let vr = vr.slice(n, "vr")?;
+        if let Some(order) = order.slice(n, "order")?.iter().find(|order| **order != 1) {
+            return Err(Fault::border(format!(
+                "order: found {order}, allowed 1 (a slope over the next step)"
+            )));
+        }
+        let slopes = value.slice(n, "value")?;
+        Ok(i.component.set_input_derivatives(vr, slopes)?)
+    })
+    .into()
 }
 
 #[unsafe(no_mangle)]
@@ -384,6 +398,15 @@ pub(crate) extern "C" fn fmi2GetStringStatus(
     _value: Out<*const c_char>,
 ) -> Status {
     c.not_provided("fmi2GetStringStatus", "canRunAsynchronuously")
+}
+
+fn bad_time(what: &str, found: f64, allowed: String) -> Fault {
+    Fault::Component(Error::BadArgument {
+        call: "setup_experiment",
+        what: what.to_owned(),
+        found: format!("{found} s"),
+        allowed,
+    })
 }
 
 fn expect_kind(found: i32, allowed: i32, name: &str) -> Result<(), Fault> {

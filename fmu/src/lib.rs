@@ -6,6 +6,8 @@
 
 mod access;
 mod capi;
+#[cfg(test)]
+mod contract;
 mod fault;
 mod fmi2;
 mod fmi3;

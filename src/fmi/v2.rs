@@ -51,6 +51,7 @@ fn capabilities(scene: &Scene) -> Attributes {
     vec![
         ("modelIdentifier", identifier(scene)),
         ("canHandleVariableCommunicationStepSize", yes()),
+        ("canInterpolateInputs", yes()),
         ("canNotUseMemoryManagementFunctions", yes()),
         ("canGetAndSetFMUstate", yes()),
         ("canSerializeFMUstate", yes()),

@@ -52,3 +52,24 @@ unsafe impl Plain for CVariable {}
 unsafe impl Plain for CStepReport {}
 // SAFETY: numbers.
 unsafe impl Plain for CLedger {}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use super::*;
+    use crate::guard::Callbacks2;
+
+    /// The same numbers stand in tests/c/signatures.hpp.
+    #[test]
+    fn structures_have_the_layout_of_the_headers() {
+        assert_eq!(size_of::<Callbacks2>(), 40);
+        assert_eq!(offset_of!(Callbacks2, environment), 32);
+        assert_eq!(size_of::<CVariable>(), 96);
+        assert_eq!(offset_of!(CVariable, length), 56);
+        assert_eq!(offset_of!(CVariable, element_index), 92);
+        assert_eq!(size_of::<CStepReport>(), 24);
+        assert_eq!(offset_of!(CStepReport, iterations), 20);
+        assert_eq!(size_of::<CLedger>(), 32);
+    }
+}
