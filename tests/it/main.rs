@@ -12,12 +12,15 @@ mod bus;
 mod cli;
 mod component;
 mod contract;
+#[cfg(feature = "cli")]
+mod fmu;
 mod gauges;
 mod json_schema;
 mod python;
 #[cfg(all(feature = "record", feature = "cli"))]
 mod record;
 mod scenes;
+mod shared_library;
 #[path = "../contract/mod.rs"]
 mod suite;
 mod variables;

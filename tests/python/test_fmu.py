@@ -1,0 +1,350 @@
+"""The FMUs as FMPy sees them: valid, the same bits as every other way of running the scene, and safe with states.
+
+Run by tests/it/fmu.rs, which packs the FMUs and runs the program first.
+"""
+
+import csv
+import math
+import os
+import subprocess
+import sys
+import tomllib
+import zipfile
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, os.path.dirname(__file__))
+
+import fmpy
+from fmpy.fmi1 import FMICallException
+from fmpy.validation import validate_fmu
+
+from importer import Fmu, Library, bits
+
+ENV = os.environ
+FMUS = {2: ENV["SANDGATE_FMU2"], 3: ENV["SANDGATE_FMU3"]}
+both = pytest.mark.parametrize("version", [2, 3])
+
+with open(ENV["SANDGATE_SCENE"], "rb") as file:
+    SCENE = tomllib.load(file)
+H = SCENE["run"]["step"]
+STEPS = round(SCENE["run"]["until"] / H)
+INPUTS = {s["input"]: s["points"] for s in SCENE["schedule"]}
+
+
+def outputs():
+    """Names of all scalar outputs, integers and flags included."""
+    description = fmpy.read_model_description(FMUS[2])
+    return [v.name for v in description.modelVariables if v.causality == "output"]
+
+
+def wanted(name, t):
+    """Value of a schedule; times and values are dyadic, so that every way of computing it gives the same bits."""
+    times, values = zip(*INPUTS[name])
+    return float(np.interp(t, times, values))
+
+
+def run(instance, first=0, last=STEPS, names=None):
+    """Steps an instance with the schedule; all outputs after each step, as bits."""
+    names = names or outputs()
+    series = []
+    for k in range(first, last):
+        for name in INPUTS:
+            instance.set(name, wanted(name, k * H))
+        instance.step(k * H, H)
+        series.append([bits(v) for v in instance.get(names)])
+    return series
+
+
+@pytest.fixture(scope="module")
+def reference():
+    """The series from the plain C interface with one thread."""
+    library = Library(ENV["SANDGATE_LIBRARY"], ENV["SANDGATE_SCENE"]).initialize()
+    series = run(library)
+    library.free()
+    return series
+
+
+@pytest.mark.parametrize("path", ENV["SANDGATE_FMUS"].split(os.pathsep))
+def test_fmpy_finds_no_fault(path):
+    assert validate_fmu(path) == []
+
+
+@pytest.mark.parametrize("path", ENV["SANDGATE_FMUS"].split(os.pathsep))
+def test_the_description_is_complete(path):
+    description = fmpy.read_model_description(path)
+    experiment = description.defaultExperiment
+    assert None not in (experiment.startTime, experiment.stopTime, experiment.tolerance, experiment.stepSize)
+    assert all(unit.baseUnit is not None for unit in description.unitDefinitions)
+    for variable in description.modelVariables:
+        assert variable.description, variable.name
+        assert variable.unit or variable.type not in ("Real", "Float64"), variable.name
+    cs = description.coSimulation
+    assert cs.canGetAndSetFMUstate and cs.canSerializeFMUstate and cs.canHandleVariableCommunicationStepSize
+    assert not (cs.needsExecutionTool or cs.canBeInstantiatedOnlyOncePerProcess)
+    assert all(unknown.dependencies == [] for unknown in description.outputs)
+
+
+@both
+def test_the_archive_is_plain(version):
+    with zipfile.ZipFile(FMUS[version]) as archive:
+        for entry in archive.infolist():
+            assert entry.compress_type in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+            assert "\\" not in entry.orig_filename and not entry.filename.startswith("/")
+            assert entry.date_time == (1980, 1, 1, 0, 0, 0)
+        with open(ENV["SANDGATE_SCENE"], "rb") as file:
+            assert archive.read("resources/scene.toml") == file.read()
+        page = archive.read("documentation/index.html").decode()
+        assert "gauge.surface.depth[1]" in page
+        assert b"Apache License" in archive.read("documentation/licenses/license.txt")
+
+
+def test_fmi_3_arrays_and_their_elements_agree():
+    fmu = Fmu(FMUS[3]).initialize(gate__sluice__opening=1.0)
+    run(fmu, last=4)
+    array = fmu.variables["gauge.surface.depth"]
+    count = int(array.dimensions[0].start)
+    elements = fmu.get([f"gauge.surface.depth[{k + 1}]" for k in range(count)])
+    assert fmu.fmu.getFloat64([array.valueReference], nValues=count) == elements
+    assert any(depth > 0.0 for depth in elements)
+    with pytest.raises(FMICallException):
+        fmu.fmu.getFloat64([array.valueReference], nValues=count - 1)
+    fmu.free()
+
+
+@both
+@pytest.mark.parametrize("threads", [1, 2])
+def test_simulate_fmu_gives_the_bits_of_the_c_interface(version, threads, reference):
+    times = sorted({t for points in INPUTS.values() for t, _ in points})
+    table = np.array(
+        [(t, *[wanted(name, t) for name in INPUTS]) for t in times],
+        dtype=[("time", float)] + [(name, float) for name in INPUTS],
+    )
+    names = outputs()
+    result = fmpy.simulate_fmu(
+        FMUS[version],
+        input=table,
+        output=names,
+        output_interval=H,
+        stop_time=STEPS * H,
+        start_values={"solver.threads": threads},
+    )
+    series = [[bits(float(row[name])) for name in names] for row in result[1:]]
+    assert list(result["time"]) == [k * H for k in range(STEPS + 1)]
+    assert series == reference
+
+
+def test_two_threads_through_the_c_interface_change_nothing(reference):
+    library = Library(ENV["SANDGATE_LIBRARY"], ENV["SANDGATE_SCENE"]).initialize(threads=2)
+    assert run(library) == reference
+    library.free()
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_the_program_gives_the_bits_of_the_c_interface(threads, reference):
+    with open(os.path.join(ENV[f"SANDGATE_RUN{threads}"], "gauges.csv"), newline="") as file:
+        rows = list(csv.DictReader(file))
+    names = outputs()
+    flag = {"true": "1", "false": "0"}
+    series = [[bits(float(flag.get(row[n], row[n]))) for n in names] for row in rows[1:]]
+    assert series == reference
+
+
+def test_the_series_shows_flow(reference):
+    """Equal series of nothing would be equal too."""
+    names = outputs()
+    last = dict(zip(names, reference[-1]))
+    assert last["inflow.feed.mass"] != bits(0.0)
+    assert last["energy.kinetic"] != reference[0][names.index("energy.kinetic")]
+    assert last["mass.error"] == bits(0.0)
+
+
+@both
+@pytest.mark.parametrize("mode", ["instantiated", "stepping"])
+def test_a_state_goes_on_in_another_process(version, mode, reference, tmp_path):
+    half = STEPS // 2
+    fmu = Fmu(FMUS[version]).initialize()
+    assert run(fmu, last=half) == reference[:half]
+    path = tmp_path / "state"
+    path.write_bytes(fmu.save())
+    assert run(fmu, first=half) == reference[half:]
+    fmu.free()
+    command = [sys.executable, __file__, "continue", str(version), mode, str(path), str(half)]
+    other = subprocess.run(command, capture_output=True, text=True)
+    assert other.returncode == 0, other.stderr
+    assert [[int(v) for v in line.split()] for line in other.stdout.splitlines()] == reference[half:]
+
+
+def go_on(version, mode, path, first):
+    """The other process."""
+    fmu = Fmu(FMUS[int(version)])
+    if mode == "stepping":
+        fmu.initialize(gate__sluice__opening=0.25)
+        fmu.step(0.0, H / 3.0)
+    with open(path, "rb") as file:
+        fmu.restore(file.read())
+    for row in run(fmu, first=int(first)):
+        print(*row)
+    fmu.free()
+
+
+@both
+def test_going_back_reset_and_a_second_instance(version, reference):
+    fmu, other = Fmu(FMUS[version]).initialize(), Fmu(FMUS[version]).initialize()
+    assert run(fmu, last=4) == reference[:4]
+    state = fmu.get_state()
+    assert run(other, last=2) == reference[:2]
+    assert run(fmu, first=4, last=10) == reference[4:10]
+    fmu.set_state(state)
+    assert run(fmu, first=4, last=10) == reference[4:10]
+    fmu.free_state(state)
+    assert run(other, first=2, last=8) == reference[2:8]
+    other.free()
+    fmu.reset()
+    fmu.initialize()
+    assert run(fmu, last=6) == reference[:6]
+    fmu.free()
+
+
+def refused(fmu, call, *texts):
+    """The call answers Error, the last message says why, and nothing changed."""
+    before = fmu.save()
+    fmu.messages.clear()
+    with pytest.raises(FMICallException) as error:
+        call()
+    assert error.value.status == 3
+    status, category, message = fmu.messages[-1]
+    assert (status, category) == (3, "logStatusError")
+    for text in texts:
+        assert text in message
+    assert fmu.save() == before
+
+
+@both
+def test_wrong_calls_are_refused_and_leave_no_trace(version, reference):
+    fmu = Fmu(FMUS[version])
+    gate = "gate.sluice.opening"
+    refused(fmu, lambda: fmu.step(0.0, H), "DoStep", "not allowed in mode Instantiated", "allowed in Stepping")
+    refused(fmu, fmu.fmu.exitInitializationMode, "not allowed in mode Instantiated")
+    refused(fmu, fmu.fmu.terminate, "not allowed in mode Instantiated")
+    fmu.initialize(stop=10.0)
+    assert run(fmu, last=2) == reference[:2]
+    t = 2 * H
+    refused(fmu, fmu.fmu.enterInitializationMode, "not allowed in mode Stepping")
+    for h in (0.0, -H, math.nan, math.inf):
+        refused(fmu, lambda: fmu.step(t, h), "DoStep", "h: found")
+    for time in (0.0, t + H, math.nan):
+        refused(fmu, lambda: fmu.step(time, H), "DoStep", "current time")
+    refused(fmu, lambda: fmu.step(t, 11.0), "10 s, the stop time")
+    for value in (math.nan, math.inf, -0.5, 1.5):
+        refused(fmu, lambda: fmu.set(gate, value), gate, "found", "allowed a number from 0 to 1")
+    refused(fmu, lambda: fmu.set("gauge.depth.depth", 1.0), "found an output")
+    refused(fmu, lambda: fmu.set("solver.threads", -1), "solver.threads", "0 to 256")
+    reals = {2: "Real", 3: "Float64"}[version]
+    getter, setter = (getattr(fmu.fmu, action + reals) for action in ("get", "set"))
+    refused(fmu, lambda: getter([9999]), "9999", "allowed 0 to")
+    validity = fmu.variables["gauge.depth.validity"].valueReference
+    refused(fmu, lambda: getter([validity]), "gauge.depth.validity", "integer", "real")
+    place = fmu.variables[gate].valueReference
+    refused(fmu, lambda: setter([place, 9999], [0.5, 0.5]), "9999")
+    refused(fmu, lambda: setter([place, place], [0.5, 7.0]), gate)
+    assert run(fmu, first=2, last=8) == reference[2:8]
+    fmu.fmu.terminate()
+    refused(fmu, lambda: fmu.step(8 * H, H), "not allowed in mode Terminated")
+    fmu.free()
+
+
+@both
+def test_bad_states_are_refused_and_leave_no_trace(version, reference):
+    fmu = Fmu(FMUS[version]).initialize()
+    run(fmu, last=3)
+    good = fmu.save()
+    turned = bytearray(good)
+    turned[len(good) // 2] ^= 1
+    for bad in (b"\0", good[:-1], good[: len(good) // 2], good + b"\0", bytes(turned), b"\0" * len(good)):
+        refused(fmu, lambda: fmu.restore(bad), "saved state refused")
+    with pytest.raises(FMICallException):
+        fmu.set_state(None)
+    assert run(fmu, first=3, last=8) == reference[3:8]
+    fmu.free()
+
+
+def test_a_state_goes_between_versions(reference):
+    fmu2, fmu3 = Fmu(FMUS[2]).initialize(), Fmu(FMUS[3])
+    run(fmu2, last=5)
+    fmu3.restore(fmu2.save())
+    assert run(fmu3, first=5, last=8) == reference[5:8]
+    fmu2.free()
+    fmu3.free()
+
+
+def test_fmi_2_without_setup_experiment_and_parameters_in_initialization_mode(reference):
+    fmu = Fmu(FMUS[2])
+    fmu.fmu.enterInitializationMode()
+    fmu.set("solver.threads", 2)
+    fmu.set("gate.sluice.opening", 0.0)
+    fmu.fmu.exitInitializationMode()
+    assert run(fmu, last=4) == reference[:4]
+    fmu.free()
+
+
+def test_fmi_2_ramps_an_input_within_a_step():
+    """A slope gives what the same straight line in many small steps tends to: the gate ends where the line ends."""
+    fmu = Fmu(FMUS[2]).initialize()
+    gate = fmu.variables["gate.sluice.opening"].valueReference
+    vr, order, slope = (fmpy.fmi2.fmi2ValueReference * 1)(gate), (fmpy.fmi2.fmi2Integer * 1)(1), (
+        fmpy.fmi2.fmi2Real * 1)(0.125 / H)
+    fmu.fmu.fmi2SetRealInputDerivatives(fmu.fmu.component, vr, 1, order, slope)
+    fmu.step(0.0, H)
+    assert fmu.get(["gate.sluice.opening"]) == [0.125]
+    h, t = 0.003, H
+    for k in range(5):
+        # Slopes that end at 1 but for rounding are no mistake, others are.
+        fmu.set("gate.sluice.opening", 0.1 + 0.17 * k)
+        slope[0] = (1.0 - (0.1 + 0.17 * k)) / h
+        fmu.fmu.fmi2SetRealInputDerivatives(fmu.fmu.component, vr, 1, order, slope)
+        fmu.step(t, h)
+        t += h
+        assert fmu.get(["gate.sluice.opening"])[0] == pytest.approx(1.0, abs=1e-15)
+    slope[0] = 0.1
+    fmu.fmu.fmi2SetRealInputDerivatives(fmu.fmu.component, vr, 1, order, slope)
+    refused(fmu, lambda: fmu.step(t, h), "by its slope 0.1")
+    refused(fmu, lambda: fmu.fmu.fmi2SetRealInputDerivatives(
+        fmu.fmu.component, vr, 1, (fmpy.fmi2.fmi2Integer * 1)(2), slope), "order: found 2")
+    fmu.free()
+
+
+@both
+def test_nothing_is_logged_when_logging_is_off(version):
+    fmu = Fmu(FMUS[version], logging=False).initialize()
+    with pytest.raises(FMICallException):
+        fmu.step(1.0, H)
+    run(fmu, last=1)
+    assert fmu.messages == []
+    fmu.fmu.setDebugLogging(True, ["logEvents"])
+    run(fmu, first=1, last=2)
+    assert [category for _, category, _ in fmu.messages] == ["logEvents"]
+    assert "internal steps" in fmu.messages[0][2]
+    fmu.free()
+
+
+@both
+def test_the_library_leaves_the_process_as_it_was(version):
+    """No thread outlives the instance; directory, locale and environment stay."""
+
+    def surroundings():
+        import locale
+        with open("/proc/self/status") as file:
+            threads = [line for line in file if line.startswith("Threads")]
+        return threads, os.getcwd(), locale.setlocale(locale.LC_ALL), dict(os.environ)
+
+    before = surroundings()
+    fmu = Fmu(FMUS[version]).initialize(solver__threads=3)
+    run(fmu, last=2)
+    fmu.free()
+    assert surroundings() == before
+
+
+if __name__ == "__main__" and sys.argv[1:2] == ["continue"]:
+    go_on(*sys.argv[2:])
