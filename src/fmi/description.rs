@@ -254,3 +254,40 @@ fn variability(variability: Variability) -> &'static str {
         Variability::Continuous => "continuous",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gauge::Validity;
+    use crate::scene;
+
+    #[test]
+    fn validity_has_the_numbers_of_the_gauges() {
+        let codes = [
+            Validity::Valid,
+            Validity::Empty,
+            Validity::Outside,
+            Validity::Blocked,
+        ];
+        let items = VALIDITY.items.map(|(_, value, _)| value);
+        assert_eq!(codes.map(|code| i64::from(code.code())), items);
+    }
+
+    #[test]
+    fn token_changes_with_scene_and_version() {
+        let text = include_str!("../../tests/scenes/small_silo.toml");
+        let tokens = |text: &str| {
+            let scene = scene::parse("small_silo.toml", text).expect("it is a scene");
+            let component = Component::new(&scene).expect("it builds");
+            [FmiVersion::V2, FmiVersion::V3].map(|version| {
+                let token = token(&component, version);
+                assert!(description(&component, version).contains(&token));
+                token
+            })
+        };
+        let [two, three] = tokens(text);
+        assert_ne!(two, three);
+        assert_eq!(tokens(text), [two.clone(), three]);
+        assert_ne!(tokens(&format!("{text}\n# changed\n"))[0], two);
+    }
+}

@@ -20,7 +20,11 @@ pub fn grain_compression<const D: usize>(r: f64, b: f64) -> f64 {
     // Work with y = x - low > 0 to keep digits when x is close to 1.
     let (c1, c2) = (low - 1.0, low - r);
     // Large B: x = B in the plane, B^(3/2) in space.
-    let far = if D == 2 { b } else { b * (1.0 + 1.5 * b.sqrt()) };
+    let far = if D == 2 {
+        b
+    } else {
+        b * (1.0 + 1.5 * b.sqrt())
+    };
     let mut y = low * (1.5 * (b.cbrt() + b.sqrt()) + far);
     for _ in 0..60 {
         let x = low + y;

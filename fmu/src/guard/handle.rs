@@ -128,3 +128,66 @@ fn message(payload: &(dyn Any + Send)) -> String {
         .or_else(|| payload.downcast_ref::<String>().cloned())
         .unwrap_or_else(|| "panic".to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use sandgate::component::Mode;
+    use sandgate::scene;
+
+    use super::*;
+    use crate::log::{Log, Sink};
+
+    fn handle() -> Handle {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let scene = scene::load(&root.join("tests/scenes/small_silo.toml")).expect("it loads");
+        Handle::new(Instance::new(&scene, Log::new(Sink::Nobody, false)).expect("it builds"))
+    }
+
+    fn mode(handle: &Handle) -> Result<Mode, Fault> {
+        handle.call("mode", Need::Sound, |i| Ok(i.component.mode()))
+    }
+
+    fn break_down(handle: &Handle) {
+        let broken: Result<(), Fault> = handle.call("break", Need::Sound, |_| panic!("on purpose"));
+        assert!(matches!(broken, Err(Fault::Broken(how)) if how.contains("on purpose")));
+    }
+
+    #[test]
+    fn a_panic_ends_at_the_wall_and_reset_or_a_state_puts_things_right() {
+        let (one, other) = (handle(), handle());
+        let saved = one.call("save", Need::Sound, |i| {
+            i.component.initialize(0.0, None)?;
+            i.save()
+        });
+        let saved = saved.expect("sound");
+        break_down(&one);
+        let refused = mode(&one).expect_err("broken").to_string();
+        assert!(refused.contains("on purpose") && refused.contains("reset the instance"));
+        assert_eq!(mode(&other).expect("not its panic"), Mode::Instantiated);
+
+        let bad = one.call("set", Need::Any, |i| i.restore(b"rubbish", None));
+        assert!(bad.is_err() && mode(&one).is_err());
+        let set = one.call("set", Need::Any, |i| i.restore(&saved.bytes, None));
+        assert!(set.is_ok());
+        assert_eq!(mode(&one).expect("sound again"), Mode::Stepping);
+
+        break_down(&one);
+        assert!(one.call("reset", Need::Any, Instance::reset).is_ok());
+        assert_eq!(mode(&one).expect("sound again"), Mode::Instantiated);
+        one.free();
+        other.free();
+    }
+
+    #[test]
+    fn a_call_during_a_call_is_refused() {
+        let one = handle();
+        let inner = one.call("outer", Need::Sound, |_| Ok(mode(&one).is_err()));
+        assert!(inner.expect("the outer call goes on"));
+        assert!(mode(&one).is_ok());
+        one.free();
+        assert!(mode(&Handle::null()).is_err());
+        Handle::null().free();
+    }
+}
