@@ -19,6 +19,8 @@ pub struct Plate<const D: usize> {
     /// Spacing of points along the axis [m].
     step: f64,
     thickness: f64,
+    /// In space: direction and length of the extrusion [m].
+    across: Option<(Vector<D>, f64)>,
     group: u16,
     /// Index of its first point among the wall points.
     first: usize,
@@ -78,6 +80,7 @@ impl<const D: usize> Plate<D> {
             points,
             step,
             thickness,
+            across: (D == 3).then(|| (scale(1.0 / norm(span), span), norm(span))),
             group,
             first: 0,
         }
@@ -121,6 +124,19 @@ impl<const D: usize> Plate<D> {
             // What has slid past the end is hidden, the last point by its share.
             walls.weight[i] = ((self.length - s) / self.step + 0.5).clamp(0.0, 1.0);
         }
+    }
+
+    /// Whether a grain at `x` touches the leading edge at an opening: closer to it than a tenth of a spacing or up to
+    /// half a spacing past it, between the plate's faces. What lies on a face is not in the way.
+    #[must_use]
+    pub fn stopped_by(&self, x: &Vector<D>, opening: f64, spacing: f64) -> bool {
+        let d = sub(x, &self.from);
+        let past = dot(&d, &self.axis) - opening * self.length;
+        let depth = -dot(&d, &self.normal);
+        let rim = 0.25 * spacing;
+        (-0.1 * spacing..0.5 * spacing).contains(&past)
+            && (rim..self.thickness - rim).contains(&depth)
+            && self.across.is_none_or(|(u, width)| (0.0..width).contains(&dot(&d, &u)))
     }
 
     /// Unit normal from the nearest point of the plate's surface to `x`, at an opening.

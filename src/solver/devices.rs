@@ -46,7 +46,7 @@ impl<const D: usize> Solver<D> {
             let most = (plate.max_speed * dt).min(0.1 * self.kernel.h) / plate.length;
             let change = (wanted[g] - gate.opening).clamp(-most, most);
             let mut rate = change / dt;
-            let blocked = change != 0.0 && self.is_blocked(state, g, &plate.velocity(rate));
+            let blocked = change < 0.0 && self.is_blocked(state, g);
             if blocked {
                 rate = 0.0;
             }
@@ -61,25 +61,11 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Whether a particle stands closer than half a spacing in the way of a plate that moves with `velocity`.
-    fn is_blocked(&self, state: &State<D>, gate: usize, velocity: &Vector<D>) -> bool {
-        let group = self.plates[gate].group();
-        let near = 0.5 * self.numerics.spacing;
-        for (c, block) in self.lists.blocks.iter().enumerate() {
-            for row in 0..block.rows() {
-                for &w in block.wall_row(row) {
-                    if self.walls.group[w as usize] != group || self.walls.weight[w as usize] == 0.0
-                    {
-                        continue;
-                    }
-                    let (x, r) = self.wall_offset(&state.grains.position[c * CHUNK + row], w);
-                    if r < near && dot(&x, velocity) > 0.0 {
-                        return true;
-                    }
-                }
-            }
-        }
-        false
+    /// Whether a grain stands against the leading edge of a plate that wants to close.
+    fn is_blocked(&self, state: &State<D>, gate: usize) -> bool {
+        let (plate, opening) = (&self.plates[gate], state.gates[gate].opening);
+        let stops = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing);
+        state.grains.position.iter().any(stops)
     }
 
     /// Counts and marks what has entered a sink; removal waits for the next lists.

@@ -80,7 +80,7 @@ impl<const D: usize> Solver<D> {
             });
         });
         self.jacobi_blocks(state, dt, jacobi);
-        let limit = self.solver_limit(state);
+        let limit = self.solver_limit(state, dt);
         let mut norm2 = dot_rows(workers, residual, residual);
         if !norm2.is_finite() {
             return Err(self.not_finite(state, "viscous force", |i| {
@@ -131,9 +131,9 @@ impl<const D: usize> Solver<D> {
         Ok(iterations)
     }
 
-    /// tolerance x |M (v* - u)|, u the walls' mean velocity where walls are touched, else the mean of v*: the same in
-    /// every inertial frame.
-    fn solver_limit(&self, state: &State<D>) -> f64 {
+    /// tolerance x |M (v* - u)|, at least that of one step's fall; u is the walls' mean velocity where walls are touched,
+    /// else the mean of v*: the same in every inertial frame.
+    fn solver_limit(&self, state: &State<D>, dt: f64) -> f64 {
         let mass = &state.grains.mass;
         let touched = self.lists.blocks.iter().any(|b| !b.wall_rows.is_empty());
         let frame = if touched {
@@ -142,9 +142,10 @@ impl<const D: usize> Solver<D> {
             let rows: Vec<Vector<D>> = self.prediction.iter().map(|p| p.velocity).collect();
             mean(&rows, mass)
         };
+        let fall = dt * self.gravity_norm;
         let scale2 = sum_rows(&self.workers, mass.len(), |i| {
             let d = sub(&self.prediction[i].velocity, &frame);
-            mass[i] * mass[i] * dot(&d, &d)
+            mass[i] * mass[i] * (dot(&d, &d) + fall * fall)
         });
         // The floor is the rounding of velocities that are all the same.
         self.numerics.solver_tolerance * scale2.sqrt()
