@@ -144,6 +144,16 @@ mod tests {
     }
 
     #[test]
+    fn decimals_keep_every_bit() {
+        let mut x: f64 = 0.1;
+        for _ in 0..2000 {
+            x = 3.99 * x * (1.0 - x);
+            let read = parse(number(x).to_string().as_bytes()).unwrap();
+            assert_eq!(read.as_f64().map(f64::to_bits), Some(x.to_bits()), "{x}");
+        }
+    }
+
+    #[test]
     fn numbers_that_are_not_finite_are_written_as_text() {
         assert_eq!(number(0.1).to_string(), "0.1");
         assert_eq!(number(f64::NAN).to_string(), "\"NaN\"");
