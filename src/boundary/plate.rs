@@ -136,7 +136,9 @@ impl<const D: usize> Plate<D> {
         let rim = 0.25 * spacing;
         (-0.1 * spacing..0.5 * spacing).contains(&past)
             && (rim..self.thickness - rim).contains(&depth)
-            && self.across.is_none_or(|(u, width)| (0.0..width).contains(&dot(&d, &u)))
+            && self
+                .across
+                .is_none_or(|(u, width)| (0.0..width).contains(&dot(&d, &u)))
     }
 
     /// Unit normal from the nearest point of the plate's surface to `x`, at an opening.

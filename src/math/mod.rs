@@ -1,6 +1,10 @@
 //! Rank 0: small vectors and tensors as plain arrays, order-fixed sums, the thread pool. No physics.
 //!
 //! Arrays instead of nalgebra types here because these sit in the hot loops; nalgebra serves the edges.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "textbook index notation: sums over components 0..D"
+)]
 
 mod sum;
 mod workers;

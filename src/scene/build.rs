@@ -54,13 +54,12 @@ fn periodic<const D: usize>(scene: &Scene) -> Result<Periodic<D>, String> {
     // Support 4 h and the lists' skin, on both sides of a particle.
     let least = 2.0 * (2.0 + 0.3) * scene.numerics.spacing * scene.numerics.smoothing_ratio;
     let mut length = [0.0; D];
-    for k in 0..D {
+    for (k, length) in length.iter_mut().enumerate() {
         if domain.periodic[k] {
-            length[k] = domain.upper[k] - domain.lower[k];
-            if length[k] < least {
+            *length = domain.upper[k] - domain.lower[k];
+            if *length < least {
                 return Err(format!(
-                    "the periodic side along axis {k} is {} m long; allowed at least {least} m (4.6 h): lengthen the domain or refine the spacing",
-                    length[k]
+                    "the periodic side along axis {k} is {length} m long; allowed at least {least} m (4.6 h): lengthen the domain or refine the spacing"
                 ));
             }
         }

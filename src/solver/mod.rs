@@ -2,6 +2,10 @@
 //!
 //! It knows particles, walls and devices; no scenes, files or clocks. The same bits for any number of threads: every
 //! row is gathered by itself, and sums run in a fixed order.
+#![allow(
+    clippy::needless_range_loop,
+    reason = "textbook index notation: sums over components a, b, c = 0..D and over grains i, as in docs/theory.md"
+)]
 
 mod constitutive;
 mod devices;
@@ -95,6 +99,9 @@ pub struct StepInputs<'a> {
     /// Rate of each inflow [kg/s].
     pub rates: &'a [f64],
 }
+
+/// Sees each move of an internal step: positions before and after [m], and masses [kg].
+pub type OnMove<'a, const D: usize> = dyn FnMut(&[Vector<D>], &[Vector<D>], &[f64]) + 'a;
 
 /// What one internal step did.
 #[derive(Clone, Copy, Debug)]
@@ -218,7 +225,7 @@ impl<const D: usize> Solver<D> {
 
     /// One internal step of at most the stable length, that brings `state` towards `end` in equal steps.
     ///
-    /// `on_move` sees positions before and after, and masses, before periodic sides and sinks act.
+    /// `on_move` looks before periodic sides and sinks act.
     ///
     /// # Errors
     /// [`SolverError`]; the state is then half-stepped and must be discarded.
@@ -227,7 +234,7 @@ impl<const D: usize> Solver<D> {
         state: &mut State<D>,
         end: f64,
         inputs: &StepInputs<'_>,
-        on_move: &mut dyn FnMut(&[Vector<D>], &[Vector<D>], &[f64]),
+        on_move: &mut OnMove<'_, D>,
     ) -> Result<SubStep, SolverError> {
         let (dt, bound) = self.choose_step(state, end)?;
         self.sweep_pressure(state, dt);
