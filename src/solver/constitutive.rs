@@ -61,7 +61,6 @@ impl<const D: usize> Solver<D> {
         self.viscosity.resize(n, 0.0);
         self.pair_viscosity.resize(n, 0.0);
         self.inertial_number.resize(n, 0.0);
-        self.update_volumes(&state.grains.mass, &state.grains.density);
         for i in 0..n {
             let k = self.kinematics[i];
             let response = match &self.materials[state.grains.phase[i] as usize] {

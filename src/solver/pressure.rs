@@ -42,7 +42,7 @@ impl<const D: usize> Solver<D> {
                 for w in &mut rows {
                     let i = first + w.row as usize;
                     let p = self.pressure[i];
-                    let a = -2.0 * p * dt / state.grains.density[i];
+                    let a = -2.0 * p * dt * self.specific_volume(state, i);
                     let o = &mut out[w.row as usize];
                     let eta = self.pair_viscosity[i];
                     for k in 0..D {
@@ -57,6 +57,12 @@ impl<const D: usize> Solver<D> {
             });
         self.lists.blocks = blocks;
         self.prediction = prediction;
+    }
+
+    /// 1/rho with the very volume that pair coefficients hold, so that forces cancel pair by pair.
+    #[inline(always)]
+    pub(super) fn specific_volume(&self, state: &State<D>, i: usize) -> f64 {
+        self.width * self.volume[i] / state.grains.mass[i]
     }
 
     fn predict(
@@ -102,9 +108,10 @@ impl<const D: usize> Solver<D> {
                 0.0
             };
         }
+        let specific = self.specific_volume(state, i);
         let mut velocity = grains.velocity[i];
         for k in 0..D {
-            velocity[k] += dt * (self.gravity[k] + force[k] / rho);
+            velocity[k] += dt * (self.gravity[k] + specific * force[k]);
         }
         Prediction {
             velocity,

@@ -292,13 +292,13 @@ impl<const D: usize> Solver<D> {
                             f[k] += along * pair.g[k];
                         }
                     }
-                    let s = dt / state.grains.density[i];
+                    let s = dt * self.specific_volume(state, i);
                     *o = std::array::from_fn(|k| self.prediction[i].velocity[k] + s * f[k]);
                 }
                 for w in &block.wall_rows {
                     let i = first + w.row as usize;
                     let drag = crate::math::apply(&w.c, &v[i]);
-                    let s = 2.0 * dt / state.grains.density[i];
+                    let s = 2.0 * dt * self.specific_volume(state, i);
                     for k in 0..D {
                         out[w.row as usize][k] -= s * (drag[k] - w.cv[k]);
                     }
