@@ -16,6 +16,7 @@ mod contract;
 mod fmu;
 mod gauges;
 mod json_schema;
+mod physics;
 mod python;
 #[cfg(all(feature = "record", feature = "cli"))]
 mod record;

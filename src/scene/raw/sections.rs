@@ -92,11 +92,11 @@ table! {
         /// Relaxation time of the strain rate in the pressure law; 20 to 200 ms is useful.
         optional strain_relaxation_time: Time, in Range::above(0.0), default "50 ms";
         /// Share of viscous stress carried pair by pair, against zero-energy modes.
-        optional pair_viscosity_share: Ratio, in Range::within(0.0, 1.0), default 0.1;
+        optional pair_viscosity_share: Ratio, in Range::within(0.0, 1.0), default 0.05;
         /// Artificial viscosity alpha.
         optional artificial_viscosity: Ratio, in Range::within(0.0, 10.0), default 0;
         /// Relative tolerance of the viscous solve.
-        optional solver_tolerance: Ratio, in Range::within(1e-14, 0.1), default 1e-4;
+        optional solver_tolerance: Ratio, in Range::within(1e-14, 0.1), default 3e-4;
         /// Most iterations of a viscous solve.
         optional solver_max_iterations: Whole, in Range::within(1.0, 1e6), default 500;
         /// Random displacement of the starting lattice, over the spacing.

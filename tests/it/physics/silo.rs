@@ -1,0 +1,76 @@
+//! Discharge of the silo: Q = C rho sqrt(g) D^1.5, whatever the fill (Beverloo; Staron et al. 2012 for mu(I)).
+
+use super::{Unit, case};
+
+/// Mean discharge [kg/s] from now on for `duration` [s].
+fn discharge(unit: &mut Unit, duration: f64) -> f64 {
+    let (t, before) = (unit.component.time(), unit.get("gauge.discharge.mass"));
+    unit.run_to(t + duration);
+    (unit.get("gauge.discharge.mass") - before) / (unit.component.time() - t)
+}
+
+/// One silo, three openings of its gate, and the fill from 80 % to 40 %.
+#[test]
+fn discharge_follows_the_opening_and_not_the_fill() {
+    let scene = case("silo_gate", &[]);
+    let mut unit = Unit::new(&scene);
+    unit.component.set_threads(0);
+    // Closed: nothing passes, and the gate carries weight.
+    unit.run_to(0.1);
+    assert_eq!(unit.get("gauge.discharge.mass"), 0.0);
+    assert!(unit.get("gauge.gate_force.force_y") < -5.0);
+
+    // Upwards from half, so that 80 % of the fill are left for the widest opening.
+    let mut openings = Vec::new();
+    for (opening, start_up) in [(0.5, 0.15), (0.75, 0.1)] {
+        unit.set("gate.main.opening", opening);
+        let t = unit.component.time();
+        unit.run_to(t + start_up);
+        let rate = discharge(&mut unit, 0.2);
+        assert!((unit.get("gate.main.actual_opening") - opening).abs() < 1e-9);
+        openings.push((opening, rate));
+    }
+    unit.set("gate.main.opening", 1.0);
+    let initial = unit.get("mass.initial");
+    let fill = |unit: &Unit| unit.get("mass.present") / initial;
+    let t = unit.component.time();
+    unit.run_to(t + 0.1);
+    let high = discharge(&mut unit, 0.15);
+    let left_high = fill(&unit);
+    assert!(left_high > 0.6, "{left_high}");
+    openings.push((1.0, high));
+    while fill(&unit) > 0.47 {
+        unit.step();
+    }
+    let low = discharge(&mut unit, 0.08);
+    let left_low = fill(&unit);
+    println!(
+        "openings and rates {openings:?}; fill {left_high:.2}: {high:.3} kg/s, fill {left_low:.2}: {low:.3} kg/s"
+    );
+    let drift = (low / high - 1.0).abs();
+    assert!(drift < 0.07, "drift {drift}");
+
+    // Least squares of ln Q = n ln D + const.
+    let n = openings.len() as f64;
+    let mean = |f: &dyn Fn(&(f64, f64)) -> f64| openings.iter().map(f).sum::<f64>() / n;
+    let (x, y) = (mean(&|o| o.0.ln()), mean(&|o| o.1.ln()));
+    let slope = openings
+        .iter()
+        .map(|o| (o.0.ln() - x) * (o.1.ln() - y))
+        .sum::<f64>()
+        / openings.iter().map(|o| (o.0.ln() - x).powi(2)).sum::<f64>();
+    println!("exponent {slope:.3}");
+    assert!((slope - 1.5).abs() < 0.1, "exponent {slope}");
+
+    // Closing again stops the flow, and what is shut in stays.
+    unit.set("gate.main.opening", 0.0);
+    let t = unit.component.time();
+    unit.run_to(t + 0.3);
+    let leak = discharge(&mut unit, 0.1);
+    assert_eq!(
+        leak,
+        0.0,
+        "opening {}",
+        unit.get("gate.main.actual_opening")
+    );
+}
