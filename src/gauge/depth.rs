@@ -178,6 +178,27 @@ mod tests {
     }
 
     #[test]
+    fn layers_in_the_corner_of_bed_and_wall_are_read_within_a_fifth_of_a_spacing() {
+        for ratio in [1.3, 1.6, 2.0] {
+            for rows in 1..8 {
+                let bed = Bed::<2>::with_side_wall(ratio, rows);
+                let line = DepthLine {
+                    foot: [0.0, 0.0],
+                    up: [0.0, 1.0],
+                    length: 1.0,
+                };
+                let depth = bed.look(|view| line.sample(view));
+                let error = (depth.values[0] - bed.height()) / bed.spacing;
+                // Solid below the foot plane but under the side wall counts as bed: single rows read high.
+                assert!(
+                    error.abs() < 0.2,
+                    "h/dp {ratio} rows {rows}: off by {error} dp"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn dry_outside_and_covered_places_say_so() {
         let bed = Bed::<2>::new(1.6, 0, 0.0);
         let up = [0.0, 1.0];

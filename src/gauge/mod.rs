@@ -1,4 +1,4 @@
-//! Gauges: what a component measures, one gauge a file, each as docs/theory.md defines it.
+//! Gauges: what a component measures, one gauge a file, each as docs/gauges.md defines it.
 //!
 //! Gauges read particles (and wall particles) and change nothing. They are sampled once per communication step.
 //! They know no scene, no variable and no file; `component::sampling` makes them from a scene.

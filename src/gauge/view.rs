@@ -133,11 +133,11 @@ pub(super) mod bed {
             }
         }
 
-        /// A bed with a wall at x = 0, twice as high.
+        /// A bed with a wall at x = 0, ten rows higher.
         pub(in crate::gauge) fn with_side_wall(ratio: f64, rows: usize) -> Self {
             let mut bed = Self::new(ratio, rows, 0.0);
             bed.periodic = false;
-            let wall: Vec<[f64; D]> = lattice(4, -4, 2 * rows as i32, bed.spacing, &mut |x| x);
+            let wall: Vec<[f64; D]> = lattice(4, -4, rows as i32 + 10, bed.spacing, &mut |x| x);
             bed.solid.extend(wall.into_iter().map(|mut x| {
                 x[0] -= 4.0 * bed.spacing;
                 x
