@@ -9,6 +9,15 @@ fn discharge(unit: &mut Unit, duration: f64) -> f64 {
     (unit.get("gauge.discharge.mass") - before) / (unit.component.time() - t)
 }
 
+/// Rate once the gate has reached an opening and the flow its new rate [kg/s].
+fn at_opening(unit: &mut Unit, opening: f64, start_up: f64) -> f64 {
+    unit.set("gate.main.opening", opening);
+    let t = unit.component.time();
+    unit.run_to(t + start_up);
+    assert!((unit.get("gate.main.actual_opening") - opening).abs() < 1e-9);
+    discharge(unit, 0.2)
+}
+
 /// One silo, three openings of its gate, and the fill from 80 % to 40 %.
 #[test]
 fn discharge_follows_the_opening_and_not_the_fill() {
@@ -20,35 +29,33 @@ fn discharge_follows_the_opening_and_not_the_fill() {
     assert_eq!(unit.get("gauge.discharge.mass"), 0.0);
     assert!(unit.get("gauge.gate_force.force_y") < -5.0);
 
-    // Upwards from half, so that 80 % of the fill are left for the widest opening.
-    let mut openings = Vec::new();
-    for (opening, start_up) in [(0.5, 0.15), (0.75, 0.1)] {
-        unit.set("gate.main.opening", opening);
-        let t = unit.component.time();
-        unit.run_to(t + start_up);
-        let rate = discharge(&mut unit, 0.2);
-        assert!((unit.get("gate.main.actual_opening") - opening).abs() < 1e-9);
-        openings.push((opening, rate));
-    }
-    unit.set("gate.main.opening", 1.0);
     let initial = unit.get("mass.initial");
     let fill = |unit: &Unit| unit.get("mass.present") / initial;
-    let t = unit.component.time();
-    unit.run_to(t + 0.1);
-    let high = discharge(&mut unit, 0.15);
-    let left_high = fill(&unit);
-    assert!(left_high > 0.6, "{left_high}");
-    openings.push((1.0, high));
-    while fill(&unit) > 0.47 {
+    let mut openings = vec![(0.5, at_opening(&mut unit, 0.5, 0.15))];
+
+    // Wide open, at 80 % and at 40 % of the fill.
+    unit.set("gate.main.opening", 1.0);
+    while fill(&unit) > 0.84 {
         unit.step();
     }
-    let low = discharge(&mut unit, 0.08);
+    let high = discharge(&mut unit, 0.1);
+    let left_high = fill(&unit);
+    while fill(&unit) > 0.44 {
+        unit.step();
+    }
+    let low = discharge(&mut unit, 0.1);
     let left_low = fill(&unit);
-    println!(
-        "openings and rates {openings:?}; fill {left_high:.2}: {high:.3} kg/s, fill {left_low:.2}: {low:.3} kg/s"
+    assert!(
+        left_high > 0.73 && left_low < 0.41,
+        "{left_high} {left_low}"
     );
     let drift = (low / high - 1.0).abs();
+    println!("fill {left_high:.2}: {high:.3} kg/s, fill {left_low:.2}: {low:.3} kg/s");
     assert!(drift < 0.07, "drift {drift}");
+    openings.push((1.0, 0.5 * (high + low)));
+
+    openings.push((0.75, at_opening(&mut unit, 0.75, 0.1)));
+    println!("openings and rates {openings:?}");
 
     // Least squares of ln Q = n ln D + const.
     let n = openings.len() as f64;
