@@ -2,7 +2,7 @@
 //!
 //! Symbols: g_ij = V_j grad W_ij; a_i = -(1/rho_i) [sum_j (p_i + p_j) g_ij + sum_walls 2 p_i g_iw].
 
-use crate::math::{Vector, dot};
+use crate::math::{Vector, dot, sub};
 use crate::state::State;
 
 use super::Solver;
@@ -80,6 +80,7 @@ impl<const D: usize> Solver<D> {
         let diffuse = numerics.density_diffusion > 0.0;
         // grad W = F x: |g|^2 c = 2 (D + 2) V |F|.
         let to_f = -1.0 / (2.0 * (D as f64 + 2.0));
+        let damp = numerics.artificial_viscosity * self.kernel.h * c0;
         let gate = 0.5 * numerics.diffusion_gate_time;
         let head = 1.0 / (rho * self.gravity_norm * numerics.spacing).max(f64::MIN_POSITIVE);
         let mut force = [0.0; D];
@@ -91,6 +92,15 @@ impl<const D: usize> Solver<D> {
             let sum = pi + pj;
             for k in 0..D {
                 force[k] -= sum * pair.g[k];
+            }
+            if numerics.artificial_viscosity > 0.0 {
+                // [A] eq. 38: (v.x)/r^2 = (v.g) F/|g|^2, on approaching and receding pairs alike.
+                let v = sub(&grains.velocity[i], &grains.velocity[j]);
+                let mean_rho = 0.5 * (rho + grains.density[j]);
+                let damping = damp * mean_rho * dot(&v, &pair.g) * to_f * pair.c;
+                for k in 0..D {
+                    force[k] += damping * pair.g[k];
+                }
             }
             if diffuse && sum > 0.0 {
                 let vf = to_f * dot(&pair.g, &pair.g) * pair.c;

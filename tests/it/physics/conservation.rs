@@ -2,7 +2,7 @@
 
 use super::{Unit, case};
 use sandgate::scene::{self, Scene};
-use sandgate::solver::{Solver, StepInputs};
+use sandgate::solver::{Scheme, Solver, StepInputs};
 use sandgate::state::State;
 
 const CASES: [&str; 6] = [
@@ -108,6 +108,14 @@ fn momentum(state: &State<2>) -> ([f64; 2], f64) {
     (sum, scale)
 }
 
+/// Kinetic energy [J].
+fn kinetic_energy(state: &State<2>) -> f64 {
+    let parts = state.grains.mass.iter().zip(&state.grains.velocity);
+    parts
+        .map(|(m, v)| 0.5 * m * (v[0] * v[0] + v[1] * v[1]))
+        .sum()
+}
+
 /// 1e-12 of sum m |v| over some 100 steps: rounding, although the solve stops at 1e-2.
 #[test]
 fn an_isolated_body_keeps_its_momentum_at_a_loose_tolerance() {
@@ -123,15 +131,42 @@ fn an_isolated_body_keeps_its_momentum_at_a_loose_tolerance() {
         let drift = (after[k] - before[k]).abs() / scale;
         assert!(drift < 1e-12, "axis {k}: {drift}");
     }
-    let energy = |s: &State<2>| -> f64 {
-        s.grains
-            .mass
-            .iter()
-            .zip(&s.grains.velocity)
-            .map(|(m, v)| 0.5 * m * (v[0] * v[0] + v[1] * v[1]))
-            .sum()
-    };
-    assert!(energy(&end) < energy(&start), "friction creates no energy");
+    assert!(
+        kinetic_energy(&end) < kinetic_energy(&start),
+        "friction creates no energy"
+    );
+}
+
+/// Artificial viscosity and the explicit scheme act pair by pair too.
+#[test]
+fn every_scheme_keeps_momentum_and_loses_energy() {
+    let mut scene = block([0.0, 0.0]);
+    scene.numerics.artificial_viscosity = 0.05;
+    let (_, damped) = run(&scene, 0.01);
+    scene.numerics.artificial_viscosity = 0.0;
+    scene.numerics.scheme = Scheme::Explicit;
+    scene.numerics.cap_time = 1.0;
+    let (start, explicit) = run(&scene, 0.01);
+    let (before, scale) = momentum(&start);
+    for (name, end) in [("artificial viscosity", &damped), ("explicit", &explicit)] {
+        let (after, _) = momentum(end);
+        for k in 0..2 {
+            assert!(
+                (after[k] - before[k]).abs() < 1e-12 * scale,
+                "{name}, axis {k}"
+            );
+        }
+        assert!(kinetic_energy(end) < kinetic_energy(&start), "{name}");
+    }
+    let (_, plain) = run(&block([0.0, 0.0]), 0.01);
+    assert_ne!(
+        plain.grains.velocity, damped.grains.velocity,
+        "the switch does something"
+    );
+    assert!(
+        explicit.steps > 2 * plain.steps,
+        "explicit viscosity bounds the step"
+    );
 }
 
 /// The same collision seen from a frame that moves at 100 m/s: velocities agree to rounding of 100 m/s, grown a little
