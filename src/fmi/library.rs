@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_program_in_a_target_folder_knows_its_source_tree() {
-        let folder = tempfile::tempdir().expect("a scratch folder");
+        let folder = temp_dir::TempDir::new().expect("a scratch folder");
         let root = folder.path();
         let target = root.join("target");
         let program = target.join("release/deps/sandgate");

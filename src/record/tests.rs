@@ -73,7 +73,7 @@ fn read(path: &Path) -> (Vec<Entry>, Ending) {
 
 #[test]
 fn a_log_reads_back_as_it_was_written() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let lines: Vec<_> = (0..50).map(line).collect();
     let (entries, ending) = read(&on_disk(folder.path(), &whole(&lines, 7)));
     assert_eq!(ending, Ending::Complete);
@@ -100,7 +100,7 @@ fn a_log_reads_back_as_it_was_written() {
 
 #[test]
 fn a_log_cut_at_any_byte_reads_up_to_the_cut_and_says_so() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let lines: Vec<_> = (0..6).map(line).collect();
     let bytes = whole(&lines, 2);
     let (all, _) = read(&on_disk(folder.path(), &bytes));
@@ -118,7 +118,7 @@ fn a_log_cut_at_any_byte_reads_up_to_the_cut_and_says_so() {
 
 #[test]
 fn a_damaged_byte_never_passes_as_a_message() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let lines: Vec<_> = (0..20).map(line).collect();
     let mut bytes = whole(&lines, 5);
     let needle = line(12).encode_to_vec();
@@ -136,7 +136,7 @@ fn a_damaged_byte_never_passes_as_a_message() {
 
 #[test]
 fn other_files_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     for bytes in [&b"[domain]\nlower = [0, 0]"[..], b"", b"\x89MCAP"] {
         let Err(error) = LogReader::open(&on_disk(folder.path(), bytes)) else {
             panic!("{bytes:?} was taken for a log");
@@ -151,7 +151,7 @@ fn other_files_are_refused() {
 
 #[test]
 fn a_disk_that_was_full_for_a_moment_leaves_a_log_without_a_hole() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let lines: Vec<_> = (0..2000).map(line).collect();
     let size = whole(&lines, 10).len();
     let disk = Disk::with_room(size / 2);
@@ -219,7 +219,7 @@ fn without_a_call_the_clock_brings_messages_to_the_disk() {
 
 #[test]
 fn a_wrong_account_of_mass_is_found_to_the_last_bit() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let mut lines: Vec<_> = (0..30).map(line).collect();
     let right = check_mass(&on_disk(folder.path(), &whole(&lines, 10))).unwrap();
     assert_eq!((right.lines, &right.wrong), (30, &None));

@@ -577,7 +577,7 @@ fn describe_tells_all_that_a_client_needs() {
 #[test]
 fn a_listener_that_others_can_reach_is_refused_unless_it_is_meant() {
     let open = |listen: &[&str], file: Option<&str>| {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temp_dir::TempDir::new().unwrap();
         let options = ServeOptions {
             instance: "small_silo".into(),
             listen: listen.iter().map(|e| (*e).to_owned()).collect(),

@@ -134,7 +134,7 @@ fn killed_run(folder: &Path) -> (PathBuf, f64) {
 
 #[test]
 fn python_and_rerun_read_what_was_written() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let log = folder.path().join("silo.mcap");
     record(&log, false);
     write_schemas(folder.path());
@@ -159,7 +159,7 @@ fn python_and_rerun_read_what_was_written() {
 
 #[test]
 fn the_account_of_mass_is_exact_at_every_line() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let path = folder.path().join("silo.mcap");
     record(&path, true);
     let check = check_mass(&path).unwrap();
@@ -171,7 +171,7 @@ fn the_account_of_mass_is_exact_at_every_line() {
 
 #[test]
 fn equal_runs_give_equal_bytes() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let paths = ["one.mcap", "two.mcap"].map(|name| folder.path().join(name));
     for path in &paths {
         record(path, true);
@@ -183,7 +183,7 @@ fn equal_runs_give_equal_bytes() {
 
 #[test]
 fn applied_inputs_of_a_log_drive_a_component_to_the_same_bits() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let path = folder.path().join("silo.mcap");
     record(&path, false);
     let mut component = None;
@@ -226,7 +226,7 @@ fn applied_inputs_of_a_log_drive_a_component_to_the_same_bits() {
 
 #[test]
 fn a_restored_component_goes_on_in_a_file_of_its_own() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let path = folder.path().join("silo.mcap");
     let scene = silo();
     let mut component = Component::new(&scene).unwrap();
@@ -282,7 +282,7 @@ fn a_restored_component_goes_on_in_a_file_of_its_own() {
 
 #[test]
 fn calls_and_lines_are_logged_both_ways() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let path = folder.path().join("calls.mcap");
     let component = Component::new(&silo()).unwrap();
     let options = RecordOptions::of(&component);
@@ -354,7 +354,7 @@ fn run_on_a_small_disk(folder: &Path, required: bool) -> std::process::Output {
 
 #[test]
 fn a_run_goes_on_when_its_log_cannot() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let output = run_on_a_small_disk(folder.path(), false);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
@@ -371,7 +371,7 @@ fn a_run_goes_on_when_its_log_cannot() {
 
 #[test]
 fn a_run_that_requires_its_log_fails_without_it() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let output = run_on_a_small_disk(folder.path(), true);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success(), "{said}");

@@ -189,7 +189,7 @@ fn parts(problem: &scene::SceneError) -> SceneErrorParts {
 
 #[test]
 fn files_that_are_no_text_are_refused_with_a_remedy() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
     let check = |name: &str, bytes: &[u8], part: &str| {
         let path = folder.path().join(name);
         fs::write(&path, bytes).unwrap();
