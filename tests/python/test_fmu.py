@@ -1,17 +1,14 @@
-"""The FMUs as FMPy sees them: valid, the same bits as every other way of running the scene, and safe with states.
+"""The FMUs as FMPy sees them: valid, safe with states, unharmed by wrong calls.
 
-Run by tests/it/fmu.rs, which packs the FMUs and runs the program first.
+Run by tests/it/fmu.rs, which packs the FMUs first.
 """
 
-import csv
 import math
 import os
 import subprocess
 import sys
-import tomllib
 import zipfile
 
-import numpy as np
 import pytest
 
 sys.path.insert(0, os.path.dirname(__file__))
@@ -20,50 +17,17 @@ import fmpy
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 
-from importer import Fmu, Library, bits
+from importer import Fmu
+from scheduled import FMUS, H, STEPS, run, through_the_c_interface
 
 ENV = os.environ
-FMUS = {2: ENV["SANDGATE_FMU2"], 3: ENV["SANDGATE_FMU3"]}
 both = pytest.mark.parametrize("version", [2, 3])
-
-with open(ENV["SANDGATE_SCENE"], "rb") as file:
-    SCENE = tomllib.load(file)
-H = SCENE["run"]["step"]
-STEPS = round(SCENE["run"]["until"] / H)
-INPUTS = {s["input"]: s["points"] for s in SCENE["schedule"]}
-
-
-def outputs():
-    """Names of all scalar outputs, integers and flags included."""
-    description = fmpy.read_model_description(FMUS[2])
-    return [v.name for v in description.modelVariables if v.causality == "output"]
-
-
-def wanted(name, t):
-    """Value of a schedule; times and values are dyadic, so that every way of computing it gives the same bits."""
-    times, values = zip(*INPUTS[name])
-    return float(np.interp(t, times, values))
-
-
-def run(instance, first=0, last=STEPS, names=None):
-    """Steps an instance with the schedule; all outputs after each step, as bits."""
-    names = names or outputs()
-    series = []
-    for k in range(first, last):
-        for name in INPUTS:
-            instance.set(name, wanted(name, k * H))
-        instance.step(k * H, H)
-        series.append([bits(v) for v in instance.get(names)])
-    return series
 
 
 @pytest.fixture(scope="module")
 def reference():
     """The series from the plain C interface with one thread."""
-    library = Library(ENV["SANDGATE_LIBRARY"], ENV["SANDGATE_SCENE"]).initialize()
-    series = run(library)
-    library.free()
-    return series
+    return through_the_c_interface()
 
 
 @pytest.mark.parametrize("path", ENV["SANDGATE_FMUS"].split(os.pathsep))
@@ -111,53 +75,6 @@ def test_fmi_3_arrays_and_their_elements_agree():
     with pytest.raises(FMICallException):
         fmu.fmu.getFloat64([array.valueReference], nValues=count - 1)
     fmu.free()
-
-
-@both
-@pytest.mark.parametrize("threads", [1, 2])
-def test_simulate_fmu_gives_the_bits_of_the_c_interface(version, threads, reference):
-    times = sorted({t for points in INPUTS.values() for t, _ in points})
-    table = np.array(
-        [(t, *[wanted(name, t) for name in INPUTS]) for t in times],
-        dtype=[("time", float)] + [(name, float) for name in INPUTS],
-    )
-    names = outputs()
-    result = fmpy.simulate_fmu(
-        FMUS[version],
-        input=table,
-        output=names,
-        output_interval=H,
-        stop_time=STEPS * H,
-        start_values={"solver.threads": threads},
-    )
-    series = [[bits(float(row[name])) for name in names] for row in result[1:]]
-    assert list(result["time"]) == [k * H for k in range(STEPS + 1)]
-    assert series == reference
-
-
-def test_two_threads_through_the_c_interface_change_nothing(reference):
-    library = Library(ENV["SANDGATE_LIBRARY"], ENV["SANDGATE_SCENE"]).initialize(threads=2)
-    assert run(library) == reference
-    library.free()
-
-
-@pytest.mark.parametrize("threads", [1, 2])
-def test_the_program_gives_the_bits_of_the_c_interface(threads, reference):
-    with open(os.path.join(ENV[f"SANDGATE_RUN{threads}"], "gauges.csv"), newline="") as file:
-        rows = list(csv.DictReader(file))
-    names = outputs()
-    flag = {"true": "1", "false": "0"}
-    series = [[bits(float(flag.get(row[n], row[n]))) for n in names] for row in rows[1:]]
-    assert series == reference
-
-
-def test_the_series_shows_flow(reference):
-    """Equal series of nothing would be equal too."""
-    names = outputs()
-    last = dict(zip(names, reference[-1]))
-    assert last["inflow.feed.mass"] != bits(0.0)
-    assert last["energy.kinetic"] != reference[0][names.index("energy.kinetic")]
-    assert last["mass.error"] == bits(0.0)
 
 
 @both
