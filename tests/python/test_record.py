@@ -28,7 +28,7 @@ from mcap_protobuf.decoder import DecoderFactory
 
 LOG = pathlib.Path(os.environ["SANDGATE_LOG"])
 SCHEMAS = pathlib.Path(os.environ["SANDGATE_SCHEMAS"])
-STEPS = 34
+STEPS = 40
 FOXGLOVE = {
     "foxglove.Log": Log_pb2,
     "foxglove.PointCloud": PointCloud_pb2,
@@ -181,7 +181,7 @@ def test_applied_holds_the_bits_of_every_step():
 
 def test_particles_are_packed_as_their_fields_say():
     clouds = of("foxglove.PointCloud")
-    assert [m.log_time for _, m, _ in clouds] == [k * 50_000_000 for k in range(4)]
+    assert [m.log_time for _, m, _ in clouds] == [k * 50_000_000 for k in range(5)]
     for _, _, cloud in clouds:
         kinds = np.dtype([(f.name, "<f4") for f in cloud.fields])
         assert [f.offset for f in cloud.fields] == [4 * i for i in range(10)]
