@@ -158,6 +158,43 @@ fn python_and_rerun_read_what_was_written() {
 }
 
 #[test]
+fn logs_of_every_case_are_whole_and_account_for_all_mass() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let mut logs = Vec::new();
+    for entry in std::fs::read_dir(python::root().join("cases")).unwrap() {
+        let case = entry.unwrap().path();
+        if case.extension() != Some(OsStr::new("toml")) {
+            continue;
+        }
+        let out = folder.path().join(case.file_stem().unwrap());
+        python::run(
+            "sandgate run",
+            Command::new(env!("CARGO_BIN_EXE_sandgate"))
+                .arg("run")
+                .arg(&case)
+                .args(["--step", "1 ms", "--until", "3 ms", "--out"])
+                .arg(&out),
+            "the program says what is wrong",
+        );
+        logs.push(out.join("run.mcap"));
+    }
+    assert!(logs.len() >= 6, "cases are missing");
+    for log in &logs {
+        let check = check_mass(log).unwrap();
+        assert_eq!((check.lines, check.wrong), (4, None), "{}", log.display());
+        python::run(
+            "rerun mcap check",
+            Command::new(python::program("rerun"))
+                .args(["mcap", "check"])
+                .arg(log),
+            "Rerun must accept the file",
+        );
+    }
+    let logs = std::env::join_paths(logs).unwrap();
+    python::pytest("test_logs.py", &[("SANDGATE_LOGS", &logs)]);
+}
+
+#[test]
 fn the_account_of_mass_is_exact_at_every_line() {
     let folder = temp_dir::TempDir::new().unwrap();
     let path = folder.path().join("silo.mcap");
@@ -366,7 +403,11 @@ fn a_run_goes_on_when_its_log_cannot() {
     let check = check_mass(&out.join("run.mcap.part")).unwrap();
     assert_eq!(check.wrong, None);
     assert!(matches!(check.ending, Ending::Cut { .. }));
-    assert!((1..=u64::from(STEPS)).contains(&check.lines), "{}", check.lines);
+    assert!(
+        (1..=u64::from(STEPS)).contains(&check.lines),
+        "{}",
+        check.lines
+    );
 }
 
 #[test]
