@@ -159,8 +159,10 @@ impl<const D: usize> Engine for Simulation<D> {
         for impulse in &mut self.state.impulse {
             *impulse = [0.0; D];
         }
-        let report = self
-            .advance_inside(start, end, inputs)
+        let workers = self.solver.workers();
+        let rows = self.state.grains.len();
+        let report = workers
+            .install(rows, || self.advance_inside(start, end, inputs))
             .map_err(|e| SolverError {
                 time: self.state.time,
                 what: e.to_string(),

@@ -24,6 +24,8 @@ pub use error::SolverError;
 pub use grid::Periodic;
 pub use numerics::{Numerics, Scheme};
 
+use std::sync::Arc;
+
 use crate::boundary::{Plate, WallPoints};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
@@ -132,7 +134,7 @@ pub struct Solver<const D: usize> {
     plates: Vec<Plate<D>>,
     sources: Vec<Source<D>>,
     sinks: Vec<Sink<D>>,
-    workers: Workers,
+    workers: Arc<Workers>,
     lists: Lists<D>,
     kinematics: Vec<Kinematics>,
     volume: Vec<f64>,
@@ -185,7 +187,7 @@ impl<const D: usize> Solver<D> {
             plates,
             sources,
             sinks,
-            workers: Workers::new(threads),
+            workers: Arc::new(Workers::new(threads)),
             kinematics: Vec::new(),
             volume: Vec::new(),
             pressure: Vec::new(),
@@ -200,7 +202,7 @@ impl<const D: usize> Solver<D> {
 
     /// Uses another number of threads (0: all cores); results do not change.
     pub fn set_threads(&mut self, threads: usize) {
-        self.workers = Workers::new(threads);
+        self.workers = Arc::new(Workers::new(threads));
     }
 
     /// Sorts a fresh state's particles and derives everything else from it.
@@ -409,8 +411,8 @@ impl<const D: usize> Solver<D> {
 
     /// Threads at work.
     #[must_use]
-    pub fn workers(&self) -> &Workers {
-        &self.workers
+    pub fn workers(&self) -> Arc<Workers> {
+        Arc::clone(&self.workers)
     }
 }
 

@@ -194,6 +194,23 @@ fn a_moving_frame_sees_the_same_flow() {
     assert!(worst < 1e-8, "{worst}");
 }
 
+/// Enough particles that sweeps really are shared out.
+#[test]
+fn the_silo_has_the_same_bits_on_any_number_of_threads() {
+    let scene = case("silo_gate", &[]);
+    let hash = |threads| {
+        let mut unit = Unit::new(&scene);
+        assert!(unit.get("solver.particles") > 4000.0);
+        unit.component.set_threads(threads);
+        unit.set("gate.main.opening", 1.0);
+        unit.run_to(0.02);
+        unit.component.state_hash()
+    };
+    let one = hash(1);
+    assert_eq!(one, hash(2));
+    assert_eq!(one, hash(3));
+}
+
 /// Sand in a box stays where it is: pressure of the depth, weight on the floor, depth kept.
 #[test]
 fn sand_at_rest_stays_at_rest() {
