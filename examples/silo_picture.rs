@@ -13,7 +13,7 @@ use sandgate::component::{Component, ParticleView, ValueReference};
 use sandgate::scene::{self, InputTarget, Scene, WallGeometry};
 
 /// Moments shown [s]: at rest, open, half closed, open again.
-const MOMENTS: [f64; 4] = [0.0, 0.9, 1.8, 2.6];
+const MOMENTS: [f64; 4] = [0.0, 0.35, 0.75, 1.1];
 /// Width of one silo and height of the row [px].
 const CELL: (f64, f64) = (250.0, 460.0);
 /// Height of the chart below [px].
@@ -29,6 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let scene = scene::load(&root.join("cases/silo_gate.toml"))?;
     let mut component = Component::new(&scene)?;
+    component.set_threads(0);
     component.initialize(0.0, None)?;
 
     let opening = reference(&component, "gate.")?;
