@@ -136,13 +136,16 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
     })
 }
 
-/// Axis most against gravity.
+/// Axis of "up".
 fn up_axis(scene: &Scene) -> usize {
-    let g = &scene.domain.gravity;
-    (0..3).fold(
-        0,
-        |best, k| if g[k].abs() > g[best].abs() { k } else { best },
-    )
+    let up = scene.up();
+    (0..3).fold(0, |best, k| {
+        if up[k].abs() > up[best].abs() {
+            k
+        } else {
+            best
+        }
+    })
 }
 
 /// Weight of the material above a place, along the up axis [Pa]: the starting pressure.

@@ -22,7 +22,7 @@ pub struct Numerics {
     pub scheme: Scheme,
     /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.5.
     pub courant: f64,
-    /// Viscosity cap: eta <= cap_time mu_s p [s]; default 20 sqrt(H/g)-like, at least 20 s.
+    /// Viscosity cap: eta <= cap_time mu_s p; a plug creeps at a rate of at most 1/cap_time [s]; default 20 s.
     pub cap_time: f64,
     /// Density diffusion delta [1]; default 0.1, 0 switches it off.
     pub density_diffusion: f64,
@@ -30,11 +30,11 @@ pub struct Numerics {
     pub diffusion_gate_time: f64,
     /// Relaxation time of the strain rate in the equation of state [s].
     pub strain_relaxation_time: f64,
-    /// Share of the viscous stress carried by the pair operator against zero-energy modes [1]; default 0.1.
+    /// Share of the viscous stress carried by the pair operator against zero-energy modes [1]; default 0.05.
     pub pair_viscosity_share: f64,
     /// Artificial viscosity alpha of [A] eq. 38 [1]; default 0.
     pub artificial_viscosity: f64,
-    /// Relative tolerance of the viscous solve [1]; default 1e-4.
+    /// Relative tolerance of the viscous solve [1]; default 3e-4.
     pub solver_tolerance: f64,
     /// Most iterations of the viscous solve before it is an error.
     pub solver_max_iterations: u32,
