@@ -54,22 +54,25 @@ fn the_silo_is_what_its_file_says() {
     assert_eq!(silo.dimension, Dimension::Two);
     assert_eq!(silo.domain.gravity, [0.0, -9.81, 0.0]);
     assert_eq!(silo.domain.width, 0.1);
-    assert_eq!(silo.numerics.spacing, 0.005);
+    assert_eq!(silo.numerics.spacing, 0.003_125);
     let gate = &silo.gates[0];
-    assert_eq!((gate.from, gate.to), ([0.045, 0.0, 0.0], [0.095, 0.0, 0.0]));
-    assert_eq!(gate.thickness, 0.02, "four spacings if left out");
+    assert_eq!(
+        (gate.from, gate.to),
+        ([0.0375, 0.0, 0.0], [0.0875, 0.0, 0.0])
+    );
+    assert_eq!(gate.thickness, 0.0125, "four spacings if left out");
     assert_eq!(gate.slip, scene::Slip::FreeSlip);
     assert_eq!(silo.schedules[0].input, InputTarget::GateOpening(0));
-    assert_eq!(silo.schedules[0].points[2], (1.0, 0.5), "\"50 %\"");
-    // 10 sqrt(g H): H = 0.42 m over the floor is more than the expected 1.6 m/s.
-    let speed = 10.0 * (9.81_f64 * 0.42).sqrt();
+    assert_eq!(silo.schedules[0].points[2], (0.4, 0.5), "\"50 %\"");
+    // 10 sqrt(g H): H = 0.45 m over the floor and 12.5 mm of lip; more than the expected 1.6 m/s.
+    let speed = 10.0 * (9.81_f64 * 0.4625).sqrt();
     assert!((silo.numerics.sound_speed - speed).abs() < 1e-9);
     let depth = silo.gauges.iter().find(|g| g.name == "depth_centre");
     let Some(GaugeKind::Depth { up, length, .. }) = depth.map(|g| &g.kind) else {
         panic!("no depth gauge: {depth:?}");
     };
     assert_eq!(*up, [0.0, 1.0, 0.0]);
-    assert_eq!(*length, 0.5, "up to the top of the domain");
+    assert_eq!(*length, 0.55, "up to the top of the domain");
 }
 
 #[test]
