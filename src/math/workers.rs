@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn sweeps_use_threads_of_their_own_also_outside_install() {
         let workers = Workers::new(3);
-        let mut seen = vec![0; 10 * CHUNK];
+        let mut seen = vec![0; PARALLEL_FROM];
         workers.each(&mut seen, |_, threads| {
             *threads = rayon::current_num_threads()
         });
