@@ -1,7 +1,7 @@
 //! Per particle: density, relaxed strain rate, pressure from the equation of state, viscosity from the rheology
 //! (docs/theory.md, E5 and E6). No neighbours here.
 
-use crate::material::{Material, MuI, Rheology, grain_compression};
+use crate::material::{Friction, Grains, Material, Rheology, grain_compression};
 use crate::state::State;
 
 use super::numerics::Scheme;
@@ -63,15 +63,13 @@ impl<const D: usize> Solver<D> {
         self.inertial_number.resize(n, 0.0);
         for i in 0..n {
             let k = self.kinematics[i];
-            let response = match &self.materials[state.grains.phase[i] as usize] {
-                Material::MuI(m) => self.granular(
-                    m,
-                    state.grains.density[i],
-                    state.grains.relaxed_shear[i],
-                    k.shear,
-                    k.correction,
-                ),
-            };
+            let response = self.granular(
+                &self.materials[state.grains.phase[i] as usize],
+                state.grains.density[i],
+                state.grains.relaxed_shear[i],
+                k.shear,
+                k.correction,
+            );
             self.pressure[i] = response.pressure;
             self.viscosity[i] = response.viscosity;
             self.inertial_number[i] = response.inertial_number;
@@ -82,12 +80,20 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// mu(I) sand: [A] eqs. 6, 7, 41, 43, 44 with the cap (or [A]'s regularisation in the explicit scheme).
-    fn granular(&self, m: &MuI, rho: f64, relaxed: f64, shear: f64, correction: f64) -> Response {
+    /// [A] eqs. 6, 7, 41, 43, 44 with the cap (or [A]'s regularisation in the explicit scheme).
+    fn granular(
+        &self,
+        m: &Material,
+        rho: f64,
+        relaxed: f64,
+        shear: f64,
+        correction: f64,
+    ) -> Response {
         let c0 = self.numerics.sound_speed;
-        let compressibility = 1.0 / (m.phi_max * m.grain_density * c0 * c0);
-        let r = rho / (m.grain_density * m.phi_max);
-        let x = grain_compression::<D>(r, m.dilatancy_factor(compressibility) * relaxed * relaxed);
+        let rest = m.rest_density();
+        let compressibility = 1.0 / (rest * c0 * c0);
+        let b = m.grains.dilatancy_factor(compressibility) * relaxed * relaxed;
+        let x = grain_compression::<D>(rho / rest, b);
         let pressure = (x - 1.0) / compressibility;
         if pressure <= 0.0 {
             return Response {
@@ -96,19 +102,13 @@ impl<const D: usize> Solver<D> {
                 inertial_number: 0.0,
             };
         }
-        let grain_size = m.grain_diameter
-            * if D == 2 {
-                1.0 / x.sqrt()
-            } else {
-                1.0 / x.cbrt()
-            };
-        let grain_density = x * m.grain_density;
-        let inertial_number = correction * shear * grain_size * (grain_density / pressure).sqrt();
+        let correction = correction * Grains::compressed_time_factor::<D>(x);
+        let inertial_number = correction * shear * m.grains.inertial_time(pressure);
         let viscosity = match self.numerics.scheme {
             Scheme::Implicit => {
-                let cap = self.numerics.cap_time * m.yield_stress(pressure);
+                let cap = self.numerics.cap_time * m.strength(pressure);
                 if shear > STILL {
-                    (m.friction(inertial_number) * pressure / shear).min(cap)
+                    (m.shear_stress(shear, pressure, correction) / shear).min(cap)
                 } else {
                     cap
                 }
@@ -117,7 +117,7 @@ impl<const D: usize> Solver<D> {
                 shear,
                 pressure,
                 self.numerics.cap_time,
-                m.mu_s * self.reference_pressure(m),
+                m.law.friction(0.0) * self.reference_pressure(m),
             ),
         };
         Response {
@@ -128,8 +128,8 @@ impl<const D: usize> Solver<D> {
     }
 
     /// tau_0/mu_s of [A]'s regularisation: the load of the deepest material, c0^2 rho/100 by the choice of c0 [Pa].
-    fn reference_pressure(&self, m: &MuI) -> f64 {
+    fn reference_pressure(&self, m: &Material) -> f64 {
         let c0 = self.numerics.sound_speed;
-        m.grain_density * m.phi_max * c0 * c0 / 100.0
+        m.rest_density() * c0 * c0 / 100.0
     }
 }

@@ -1,7 +1,7 @@
 //! Materials. To add a law: a table in `raw/sections.rs`, a line in its `RawMaterial`, a function here.
 
 use super::Lift;
-use crate::material::{Material, MuI};
+use crate::material::{Grains, Law, Material, MuI};
 use crate::scene::raw::{At, Place, Preset, RawMaterial, RawMuI};
 use crate::scene::types::NamedMaterial;
 
@@ -12,7 +12,7 @@ impl Lift<'_> {
         let mut lifted = Vec::new();
         for entry in entries.into_iter().flatten() {
             let material = match &entry.value {
-                Some(RawMaterial::MuI(raw)) => self.mu_i(&entry.place, raw).map(Material::MuI),
+                Some(RawMaterial::MuI(raw)) => self.mu_i(&entry.place, raw),
                 None => None,
             };
             lifted.push(material.map(|material| NamedMaterial {
@@ -31,11 +31,11 @@ impl Lift<'_> {
         lifted
     }
 
-    fn mu_i(&mut self, table: &Place, raw: &RawMuI) -> Option<MuI> {
+    fn mu_i(&mut self, table: &Place, raw: &RawMuI) -> Option<Material> {
         let preset = raw.preset.as_ref().map(|p| match p.value {
-            Preset::GlassBeads => MuI::glass_beads(),
-            Preset::Sand08 => MuI::sand_08(),
-            Preset::Sand04 => MuI::sand_04(),
+            Preset::GlassBeads => Material::glass_beads(),
+            Preset::Sand08 => Material::sand_08(),
+            Preset::Sand04 => Material::sand_04(),
         });
         let mut value = |key: &'static str, given: Option<f64>, from: Option<f64>| {
             let value = given.or(from);
@@ -46,48 +46,58 @@ impl Lift<'_> {
             }
             value
         };
-        let p = preset.as_ref();
+        let p = preset.as_ref().map(|p| &p.grains);
+        let law = preset.as_ref().map(|p| {
+            let Law::MuI(law) = p.law;
+            law
+        });
         let tan = |a: &At<crate::scene::raw::Angle>| a.value.0.tan();
         let mu_s = value(
             "static_friction_angle",
             raw.static_friction_angle.as_ref().map(tan),
-            p.map(|p| p.mu_s),
+            law.map(|law| law.mu_s),
         );
         let mu_2 = value(
             "dynamic_friction_angle",
             raw.dynamic_friction_angle.as_ref().map(tan),
-            p.map(|p| p.mu_2),
+            law.map(|law| law.mu_2),
         );
         let inertial_number_scale = value(
             "inertial_number_scale",
             raw.inertial_number_scale.as_ref().map(|v| v.value.0),
-            p.map(|p| p.inertial_number_scale),
+            law.map(|law| law.inertial_number_scale),
         );
         let grain_diameter = value(
             "grain_diameter",
             raw.grain_diameter.as_ref().map(|v| v.value.0),
-            p.map(|p| p.grain_diameter),
+            p.map(|p| p.diameter),
         );
         let grain_density = value(
             "grain_density",
             raw.grain_density.as_ref().map(|v| v.value.0),
-            p.map(|p| p.grain_density),
+            p.map(|p| p.density),
         );
         // Without a preset: the dense regime of [A], section 2.
         let phi_max = raw.phi_max.as_ref().map(|v| v.value.0);
         let phi_min = raw.phi_min.as_ref().map(|v| v.value.0);
-        let material = MuI {
+        let law = MuI {
             mu_s: mu_s?,
             mu_2: mu_2?,
             inertial_number_scale: inertial_number_scale?,
-            grain_diameter: grain_diameter?,
-            grain_density: grain_density?,
+        };
+        let grains = Grains {
+            diameter: grain_diameter?,
+            density: grain_density?,
             phi_max: phi_max.or(p.map(|p| p.phi_max)).unwrap_or(0.6),
             phi_min: phi_min.or(p.map(|p| p.phi_min)).unwrap_or(0.5),
         };
-        let angles = self.check_friction_order(table, raw, &material);
-        let fractions = self.check_fraction_order(table, raw, &material);
-        (angles && fractions).then_some(material)
+        let angles = self.check_friction_order(table, raw, &law);
+        let fractions = self.check_fraction_order(table, raw, &grains);
+        (angles && fractions).then_some(Material {
+            grains,
+            law: Law::MuI(law),
+            cohesion: 0.0,
+        })
     }
 
     fn report_missing_parameter(&mut self, table: &Place, key: &str) {
@@ -121,7 +131,7 @@ impl Lift<'_> {
     }
 
     /// Flowing material is looser.
-    fn check_fraction_order(&mut self, table: &Place, raw: &RawMuI, material: &MuI) -> bool {
+    fn check_fraction_order(&mut self, table: &Place, raw: &RawMuI, material: &Grains) -> bool {
         let good = material.phi_min < material.phi_max;
         if !good {
             let place = [&raw.phi_min, &raw.phi_max].into_iter().flatten().next();

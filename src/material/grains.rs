@@ -1,0 +1,46 @@
+//! The grains of a material: size, density and packing ([A] eqs. 6, 8, 9).
+
+/// Grains. Symbols: d0 diameter, rho_s0 density of their own material, phi volume fraction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grains {
+    /// Diameter d0 [m]; 0 for a material without rate dependence and dilatancy.
+    pub diameter: f64,
+    /// Density rho_s0 > 0 without load [kg/m^3].
+    pub density: f64,
+    /// Largest volume fraction phi_max, at rest [1].
+    pub phi_max: f64,
+    /// Smallest volume fraction phi_min < phi_max of grains in contact [1].
+    pub phi_min: f64,
+}
+
+impl Grains {
+    /// Bulk density at rest without load, phi_max rho_s0 [kg/m^3].
+    #[inline]
+    #[must_use]
+    pub fn rest_density(&self) -> f64 {
+        self.phi_max * self.density
+    }
+
+    /// d0 sqrt(rho_s0/p): the inertial number is this time the shear rate ([A] eq. 6) [s]. p > 0 [Pa].
+    #[inline]
+    #[must_use]
+    pub fn inertial_time(&self, p: f64) -> f64 {
+        self.diameter * (self.density / p).sqrt()
+    }
+
+    /// B / gamma^2 of the closing relation for the grain compressibility K_t [s^2]; see `eos`.
+    #[inline]
+    #[must_use]
+    pub fn dilatancy_factor(&self, compressibility: f64) -> f64 {
+        let s = (self.phi_max - self.phi_min) * self.diameter / self.phi_max;
+        self.density * compressibility * s * s
+    }
+
+    /// What compressed grains change in the inertial number ([A] eqs. 6 and 43), x = rho_s/rho_s0 >= 1:
+    /// (d/d0) sqrt(x) = x^(1/2 - 1/D): nothing in the plane, x^(1/6) in space [1].
+    #[inline]
+    #[must_use]
+    pub fn compressed_time_factor<const D: usize>(x: f64) -> f64 {
+        if D == 2 { 1.0 } else { x.powf(1.0 / 6.0) }
+    }
+}
