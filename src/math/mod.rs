@@ -6,9 +6,11 @@
     reason = "textbook index notation: sums over components 0..D"
 )]
 
+mod geometry;
 mod sum;
 mod workers;
 
+pub use geometry::Geometry;
 pub use sum::{dot_rows, maximum, sum_rows};
 pub use workers::{CHUNK, Workers};
 

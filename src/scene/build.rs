@@ -1,12 +1,12 @@
 //! Scene to what the solver runs: particles, wall points, devices. The last function that knows scenes.
 
 use crate::boundary::{GroupSpec, Plate, WallPoints, box_points, plane_points, polyline_points};
-use crate::math::{Vector, add, dot, norm, scale};
+use crate::math::{Geometry, Vector, add, dot, norm, scale};
 use crate::shape::lattice;
 use crate::solver::{Periodic, Plan, Sink, Source};
 use crate::state::{GateState, Grains, InflowState, Random, State};
 
-use super::{ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, WallGeometry};
+use super::{Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, WallGeometry};
 
 /// The first D components of a point.
 #[must_use]
@@ -35,7 +35,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     let plan = Plan {
         numerics: scene.numerics.clone(),
         gravity: narrow(&scene.domain.gravity),
-        width: scene.domain.width,
+        geometry: geometry(scene),
         lower: narrow(&scene.domain.lower),
         upper: narrow(&scene.domain.upper),
         periodic,
@@ -47,6 +47,17 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     };
     check_overlap(&plan, &state)?;
     Ok((plan, state))
+}
+
+/// What a scene's coordinates stand for.
+#[must_use]
+pub fn geometry(scene: &Scene) -> Geometry {
+    match scene.dimension {
+        Dimension::Two => Geometry::Planar {
+            width: scene.domain.width,
+        },
+        Dimension::Three => Geometry::Space,
+    }
 }
 
 fn periodic<const D: usize>(scene: &Scene) -> Result<Periodic<D>, String> {

@@ -11,7 +11,7 @@ mod raw;
 mod reference;
 mod types;
 
-pub use build::{build, narrow};
+pub use build::{build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
 pub use reference::{reference_markdown, schema};
 pub use types::*;

@@ -4,8 +4,8 @@
 //! Symbols: F = W'(r)/r <= 0, grad W_ij = F x_ij, x_ij = x_i - x_j, v_ij = v_i - v_j, V = m/rho.
 
 use crate::math::{
-    Tensor, Vector, add_outer, determinant, dot, inverse, multiply, norm, scale, shear_rate,
-    strain_deviator, sub, trace,
+    Geometry, Tensor, Vector, add_outer, determinant, dot, inverse, multiply, norm, scale, sub,
+    trace,
 };
 use crate::state::State;
 
@@ -82,7 +82,7 @@ impl<const D: usize> Solver<D> {
             {
                 wall_rows.push(w);
             }
-            *o = finish(&sums);
+            *o = finish(self.geometry, &sums, 0.0);
         }
         block.pairs = pairs;
         block.wall_rows = wall_rows;
@@ -273,14 +273,12 @@ impl<const D: usize> WallRow<D> {
     }
 }
 
-/// From sums to what the rheology needs.
-fn finish<const D: usize>(sums: &Row<D>) -> Kinematics {
-    let shear = shear_rate(&strain_deviator(&sums.gradient));
+/// From sums and the hoop strain rate (rings only) to what the rheology needs.
+fn finish<const D: usize>(geometry: Geometry, sums: &Row<D>, hoop: f64) -> Kinematics {
+    let rate = |g: &Tensor<D>| geometry.shear_rate(&geometry.strain_deviator(g, hoop));
+    let shear = rate(&sums.gradient);
     let correction = if shear > 0.0 && determinant(&sums.moment) > 0.15 {
-        let corrected = shear_rate(&strain_deviator(&multiply(
-            &sums.gradient,
-            &inverse(&sums.moment),
-        )));
+        let corrected = rate(&multiply(&sums.gradient, &inverse(&sums.moment)));
         (corrected / shear).clamp(0.8, 3.0)
     } else {
         1.0

@@ -29,7 +29,7 @@ use std::sync::Arc;
 use crate::boundary::{Plate, WallPoints};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
-use crate::math::{Vector, Workers, norm};
+use crate::math::{Geometry, Vector, Workers, norm};
 use crate::state::State;
 
 use kinematics::Kinematics;
@@ -73,8 +73,8 @@ pub struct Plan<const D: usize> {
     pub numerics: Numerics,
     /// Gravity [m/s^2].
     pub gravity: Vector<D>,
-    /// Out-of-plane width of planar scenes [m]; 1 in space.
-    pub width: f64,
+    /// What coordinates stand for.
+    pub geometry: Geometry,
     /// Lower corner of the domain [m].
     pub lower: Vector<D>,
     /// Upper corner of the domain [m].
@@ -122,6 +122,8 @@ pub struct Solver<const D: usize> {
     numerics: Numerics,
     gravity: Vector<D>,
     gravity_norm: f64,
+    geometry: Geometry,
+    /// Of planar scenes [m]; 1 otherwise.
     width: f64,
     lower: Vector<D>,
     upper: Vector<D>,
@@ -155,7 +157,7 @@ impl<const D: usize> Solver<D> {
         let Plan {
             numerics,
             gravity,
-            width,
+            geometry,
             lower,
             upper,
             periodic,
@@ -176,7 +178,8 @@ impl<const D: usize> Solver<D> {
             gravity_norm: norm(&gravity),
             numerics,
             gravity,
-            width,
+            geometry,
+            width: geometry.width(),
             lower,
             upper,
             periodic,

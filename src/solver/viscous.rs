@@ -7,9 +7,7 @@
 //!
 //! (M - dt F) v = M v*, by conjugate gradients with D x D Jacobi blocks, started from the last step's change.
 
-use crate::math::{
-    Tensor, Vector, add_outer, dot, dot_rows, inverse, scale, strain_deviator, sub, sum_rows,
-};
+use crate::math::{Tensor, Vector, add_outer, dot, dot_rows, inverse, scale, sub, sum_rows};
 use crate::state::State;
 
 use super::lists::mean;
@@ -181,7 +179,8 @@ impl<const D: usize> Solver<D> {
                         }
                     }
                     let f = 2.0 * (1.0 - share) * eta;
-                    *t = strain_deviator(&gradient).map(|r| scale(f, &r));
+                    let e = self.geometry.strain_deviator(&gradient, 0.0);
+                    *t = e.map(|r| scale(f, &r));
                 }
             });
     }
