@@ -8,6 +8,7 @@ use crate::component;
 use crate::fmi;
 use crate::record::RecordError;
 use crate::scene::SceneErrors;
+use crate::validate;
 
 /// The exit codes, as `--help` shows them. [`CliError::exit_code`] is the same table in code.
 pub(super) const EXIT_CODES: &str = "\
@@ -36,6 +37,9 @@ pub enum CliError {
     /// The FMU could not be packed.
     #[error("error: {0}")]
     Fmu(#[from] fmi::Error),
+    /// A validation study could not be run or written.
+    #[error("error: {0}")]
+    Validate(#[from] validate::Error),
     /// The log cannot be written, and the scene requires it.
     #[error("error: {0}")]
     Log(#[from] RecordError),
@@ -84,7 +88,8 @@ impl CliError {
                 error.status().exit_code
             }
             Self::Fmu(fmi::Error::SceneTooLong { .. }) => 3,
-            Self::Fmu(_) => 5,
+            Self::Fmu(_) | Self::Validate(validate::Error::File { .. }) => 5,
+            Self::Validate(_) => 1,
             Self::Log(_) | Self::File { .. } | Self::Content { .. } => 5,
             Self::Interrupted(_) => 130,
             #[cfg(feature = "bus")]

@@ -19,6 +19,7 @@ mod schema;
 #[cfg(feature = "bus")]
 mod serve;
 mod stop;
+mod validate;
 
 use std::io::Write as _;
 use std::path::Path;
@@ -50,6 +51,8 @@ enum Command {
     /// Serve a case on Zenoh: gauges out, set-points and requests in
     #[cfg(feature = "bus")]
     Serve(serve::Args),
+    /// Compare runs with published data and exact solutions, and write docs/validation
+    Validate(validate::Args),
     /// Print the JSON Schema of scene files
     Schema(schema::Args),
 }
@@ -82,6 +85,7 @@ fn dispatch(command: &Command) -> Result<(), CliError> {
         Command::Fmu(args) => fmu::run(args),
         #[cfg(feature = "bus")]
         Command::Serve(args) => serve::run(args),
+        Command::Validate(args) => validate::run(args),
         Command::Schema(args) => schema::run(args),
     }
 }

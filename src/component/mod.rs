@@ -14,6 +14,7 @@ mod engine;
 mod error;
 mod lifecycle;
 mod outputs;
+mod points;
 mod reports;
 mod sampling;
 mod simulation;
@@ -22,6 +23,7 @@ mod status;
 mod variables;
 
 pub use error::{Error, Severity};
+pub use points::next_point;
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport};
 pub use status::Status;
 pub use variables::{

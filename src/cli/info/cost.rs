@@ -2,8 +2,9 @@
 
 use crate::cli::CliError;
 use crate::cli::clock::Stopwatch;
-use crate::cli::run::{bound_name, next_point, scheduled};
+use crate::cli::run::bound_name;
 use crate::component::Component;
+use crate::component::next_point;
 use crate::scene::Scene;
 use crate::solver::Scheme;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -46,7 +47,7 @@ pub(super) fn measure(component: &mut Component) -> Result<Measured, CliError> {
     let watch = Stopwatch::start();
     while let Some(next) = next_point(component.time(), plan.step, plan.until) {
         let time = component.time();
-        let (references, values) = scheduled(component, time);
+        let (references, values) = component.scheduled(time);
         component.set(&references, &values)?;
         let report = component.do_step(time, next - time)?;
         if report.smallest_step < measured.smallest_step {

@@ -6,7 +6,6 @@
 //! on anything here but communication steps and inputs.
 
 mod folder;
-mod grid;
 mod log;
 mod plot;
 mod progress;
@@ -19,8 +18,6 @@ use std::path::PathBuf;
 use super::{CliError, load_scene, quantity, stop};
 use session::Session;
 
-pub(super) use grid::next as next_point;
-pub(super) use session::scheduled;
 pub(super) use summary::bound_name;
 
 /// What may be typed after `sandgate run`.

@@ -9,11 +9,11 @@ use super::folder::Folder;
 use super::log::RunLog;
 use super::progress::Progress;
 use super::series::Series;
-use super::{grid, plot, summary};
+use super::{plot, summary};
 use crate::cli::clock::{Stopwatch, cores};
 use crate::cli::{CliError, say};
-use crate::component::{Component, Mode, StepReport, ValueReference};
-use crate::scene::{InputTarget, Scene};
+use crate::component::{Component, Mode, StepReport, next_point};
+use crate::scene::Scene;
 
 /// A run as it is meant.
 pub(super) struct Plan {
@@ -99,7 +99,7 @@ pub(super) fn ready(
         )));
     }
     let time = component.time();
-    if grid::next(time, plan.step, plan.until).is_none() {
+    if next_point(time, plan.step, plan.until).is_none() {
         return Err(CliError::Usage(format!(
             "the saved state is at t = {time} s and the run ends at {} s; give a later end with --until",
             plan.until
@@ -138,7 +138,7 @@ impl Session {
         let mut session = Self {
             progress: Progress::start(&component.scene().name, from, plan.until),
             next_checkpoint: plan.checkpoint_every.map_or(f64::INFINITY, |every| {
-                grid::next(from, every, f64::INFINITY).unwrap_or(f64::INFINITY)
+                next_point(from, every, f64::INFINITY).unwrap_or(f64::INFINITY)
             }),
             part: Part {
                 from,
@@ -181,7 +181,7 @@ impl Session {
 
     /// Steps to the end, to Ctrl-C or to the first error.
     pub(super) fn advance(&mut self, stop: &AtomicBool) -> Outcome {
-        while let Some(next) = grid::next(self.component.time(), self.plan.step, self.plan.until) {
+        while let Some(next) = next_point(self.component.time(), self.plan.step, self.plan.until) {
             if stop.load(Ordering::SeqCst) {
                 return Outcome::Interrupted;
             }
@@ -194,7 +194,7 @@ impl Session {
 
     fn step_to(&mut self, next: f64) -> Result<(), CliError> {
         let time = self.component.time();
-        let (references, values) = scheduled(&self.component, time);
+        let (references, values) = self.component.scheduled(time);
         self.component.set(&references, &values)?;
         self.log.inputs(&self.component, &references, &values);
         let report = self.component.do_step(time, next - time)?;
@@ -225,7 +225,7 @@ impl Session {
         self.write_summary("running", None)?;
         if let Some(every) = self.plan.checkpoint_every {
             let time = self.component.time();
-            self.next_checkpoint = grid::next(time, every, f64::INFINITY).unwrap_or(f64::INFINITY);
+            self.next_checkpoint = next_point(time, every, f64::INFINITY).unwrap_or(f64::INFINITY);
         }
         Ok(())
     }
@@ -275,28 +275,4 @@ impl Session {
         let (status, error) = outcome.words();
         self.log.finish(&self.component, status, error.as_deref())
     }
-}
-
-/// The scheduled inputs at `time` [s]: references and values for one `set`.
-pub(in crate::cli) fn scheduled(
-    component: &Component,
-    time: f64,
-) -> (Vec<ValueReference>, Vec<f64>) {
-    let scene = component.scene();
-    scene
-        .schedules
-        .iter()
-        .filter_map(|schedule| {
-            let name = match schedule.input {
-                InputTarget::GateOpening(gate) => {
-                    format!("gate.{}.opening", scene.gates[gate].name)
-                }
-                InputTarget::InflowRate(inflow) => {
-                    format!("inflow.{}.rate", scene.inflows[inflow].name)
-                }
-            };
-            let variable = component.variables().by_name(&name)?;
-            Some((variable.reference, schedule.value_at(time)))
-        })
-        .unzip()
 }

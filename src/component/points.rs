@@ -1,12 +1,18 @@
-//! Communication points: whole multiples of the communication step, so that times never drift and a resumed run
-//! meets the points of an unbroken one.
+//! Runs without an orchestrator: communication points and scheduled inputs.
+//!
+//! Points are whole multiples of the communication step, so that times never drift and a resumed run meets the points
+//! of an unbroken one.
+
+use super::{Component, ValueReference};
+use crate::scene::InputTarget;
 
 /// Share of a step within which two times count as the same point.
 const SLACK: f64 = 1e-9;
 
 /// The next communication point after `time`: a multiple of `step`, or `until` if that comes first [s].
 /// `None` at the end.
-pub(in crate::cli) fn next(time: f64, step: f64, until: f64) -> Option<f64> {
+#[must_use]
+pub fn next_point(time: f64, step: f64, until: f64) -> Option<f64> {
     if time >= until - SLACK * step {
         return None;
     }
@@ -18,9 +24,30 @@ pub(in crate::cli) fn next(time: f64, step: f64, until: f64) -> Option<f64> {
     })
 }
 
+impl Component {
+    /// The scene's scheduled inputs at `time` [s]: references and values for one [`Component::set`].
+    #[must_use]
+    pub fn scheduled(&self, time: f64) -> (Vec<ValueReference>, Vec<f64>) {
+        let scene = self.scene();
+        let value = |schedule: &crate::scene::Schedule| {
+            let name = match schedule.input {
+                InputTarget::GateOpening(gate) => {
+                    format!("gate.{}.opening", scene.gates[gate].name)
+                }
+                InputTarget::InflowRate(inflow) => {
+                    format!("inflow.{}.rate", scene.inflows[inflow].name)
+                }
+            };
+            let variable = self.variables().by_name(&name)?;
+            Some((variable.reference, schedule.value_at(time)))
+        };
+        scene.schedules.iter().filter_map(value).unzip()
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::next;
+    use super::next_point as next;
 
     #[test]
     fn points_are_multiples_and_the_end_is_met_exactly() {

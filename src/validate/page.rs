@@ -1,0 +1,432 @@
+//! Pages of docs/validation: one a study, and the index of all.
+//!
+//! A page holds no date and no path, so that writing it again from the same recordings gives the same bytes. Its second
+//! line is a summary for programs: the index and `--list` are made from it.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::report::number;
+use super::store::replace;
+use super::{
+    Effort, Error, Member, Metric, Outcome, Recording, Report, Rule, Store, Study, Table, Verdict,
+};
+
+/// First line of every page.
+const MADE: &str = "<!-- Written by `sandgate validate`; do not edit. -->";
+const SUMMARY: &str = "<!-- summary: ";
+
+/// What a page says, for the index.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Whether the runs were those of `--quick`.
+    pub quick: bool,
+    /// Metrics met.
+    pub met: usize,
+    /// Metrics that fall short.
+    pub short: usize,
+    /// Metrics without a result.
+    pub missing: usize,
+    /// Members with a recording, and members in all.
+    pub members: (usize, usize),
+    /// Largest number of particles.
+    pub particles: u64,
+    /// CPU time of all members [s].
+    pub cpu: f64,
+    /// Hash of the sources of each recording, without repetition.
+    pub sources: Vec<String>,
+    /// Hash of the keys of all recordings: another one means that the page is older than they are.
+    pub recordings: String,
+}
+
+/// Where a page stands against the recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// There is no page.
+    None,
+    /// It was written from other recordings than those there are now.
+    Stale,
+    /// It says what the recordings say.
+    Current,
+}
+
+/// A study's recordings as the store has them, in the order of its members; stale ones too.
+#[derive(Debug)]
+pub struct Found {
+    /// The members.
+    pub members: Vec<Member>,
+    /// What is kept of each.
+    pub recordings: Vec<Option<Recording>>,
+    /// How many were computed by other sources or from another scene.
+    pub outdated: usize,
+}
+
+impl Found {
+    /// Looks for a study's members.
+    ///
+    /// # Errors
+    /// [`Error::Defect`] if the study cannot name its members.
+    pub fn new(study: &Study, effort: Effort, store: &Store) -> Result<Self, Error> {
+        let members = members(study, effort)?;
+        let recordings: Vec<_> = members.iter().map(|m| store.any(study.name, m)).collect();
+        let pairs = members.iter().zip(&recordings);
+        let outdated = pairs
+            .filter(|(m, r)| r.as_ref().is_some_and(|r| r.key != store.key(m)))
+            .count();
+        Ok(Self {
+            members,
+            recordings,
+            outdated,
+        })
+    }
+
+    fn there(&self) -> impl Iterator<Item = (&Member, &Recording)> {
+        let pairs = self.members.iter().zip(&self.recordings);
+        pairs.filter_map(|(member, recording)| Some((member, recording.as_ref()?)))
+    }
+
+    fn hash(&self) -> String {
+        let mut hash = Sha256::new();
+        for (member, recording) in self.there() {
+            hash.update(member.name.as_bytes());
+            hash.update(recording.key.as_bytes());
+        }
+        hash.finalize()
+            .iter()
+            .take(8)
+            .map(|b| format!("{b:02x}"))
+            .collect()
+    }
+}
+
+/// A study's members.
+///
+/// # Errors
+/// [`Error::Defect`].
+pub fn members(study: &Study, effort: Effort) -> Result<Vec<Member>, Error> {
+    (study.members)(effort).map_err(|problem| Error::Defect {
+        study: study.name.to_owned(),
+        member: "all".to_owned(),
+        problem,
+    })
+}
+
+impl Summary {
+    fn of(found: &Found, report: &Report, effort: Effort) -> Self {
+        let recordings: Vec<&Recording> = found.there().map(|(_, r)| r).collect();
+        let mut sources: Vec<String> = recordings.iter().map(|r| r.sources.clone()).collect();
+        sources.sort();
+        sources.dedup();
+        Self {
+            quick: effort == Effort::Quick,
+            met: report.count(Verdict::Met),
+            short: report.count(Verdict::FallsShort),
+            missing: report.count(Verdict::NoResult),
+            members: (recordings.len(), found.members.len()),
+            particles: recordings.iter().map(|r| r.particles).max().unwrap_or(0),
+            cpu: recordings.iter().map(|r| r.cpu).sum(),
+            sources,
+            recordings: found.hash(),
+        }
+    }
+
+    /// The summary of a page's text.
+    #[must_use]
+    pub fn read(page: &str) -> Option<Self> {
+        let line = page.lines().find_map(|line| line.strip_prefix(SUMMARY))?;
+        serde_json::from_str(line.strip_suffix(" -->")?).ok()
+    }
+
+    /// The verdict in words.
+    #[must_use]
+    pub fn verdict(&self) -> String {
+        let judged = self.met + self.short + self.missing;
+        let mut text = match (self.short, self.missing) {
+            (0, 0) if judged > 0 => format!("met ({judged} of {judged})"),
+            (0, 0) => "reported only".to_owned(),
+            (0, missing) => format!("incomplete ({missing} of {judged} without a result)"),
+            (short, 0) => format!("falls short ({short} of {judged})"),
+            (short, missing) => {
+                format!("falls short ({short} of {judged}, {missing} without a result)")
+            }
+        };
+        if self.quick {
+            text.push_str(", quick runs only");
+        }
+        text
+    }
+}
+
+/// Where a study's page in `folder` stands against its recordings.
+#[must_use]
+pub fn standing(folder: &Path, study: &Study, found: &Found) -> Standing {
+    let page = std::fs::read_to_string(folder.join(format!("{}.md", study.name)));
+    match page.ok().as_deref().and_then(Summary::read) {
+        None => Standing::None,
+        Some(summary) if summary.recordings == found.hash() => Standing::Current,
+        Some(_) => Standing::Stale,
+    }
+}
+
+/// Analyses what there is of a study and writes its page and figures into `folder`; answers what the page says.
+///
+/// # Errors
+/// [`Error::File`], [`Error::Figure`] and [`Error::Defect`] if the analysis cannot be made.
+pub fn write(
+    folder: &Path,
+    study: &Study,
+    effort: Effort,
+    found: &Found,
+) -> Result<Summary, Error> {
+    let recordings = found.there().map(|(m, r)| (m.name.clone(), r.clone()));
+    let results = super::Results::new(effort, recordings.collect());
+    let report = (study.analyse)(&results).map_err(|problem| Error::Figure {
+        name: study.name.to_owned(),
+        problem,
+    })?;
+    for figure in &report.figures {
+        let file = folder.join(format!("{}_{}.svg", study.name, figure.name));
+        replace(&file, figure.svg.as_bytes())?;
+    }
+    let summary = Summary::of(found, &report, effort);
+    let text = text(study, found, &report, &summary);
+    replace(&folder.join(format!("{}.md", study.name)), text.as_bytes())?;
+    Ok(summary)
+}
+
+/// A study's page.
+fn text(study: &Study, found: &Found, report: &Report, summary: &Summary) -> String {
+    let encoded = serde_json::to_string(summary).unwrap_or_default();
+    let mut page = format!("{MADE}\n{SUMMARY}{encoded} -->\n# {}\n\n", study.title);
+    let mut add = |paragraph: &str| {
+        page.push_str(paragraph.trim_end());
+        page.push_str("\n\n");
+    };
+    add(&format!("**Verdict: {}.**", summary.verdict()));
+    if summary.quick {
+        add(
+            "These are the coarse and few runs of `--quick`: they show that the study works, and judge nothing.",
+        );
+    }
+    if found.outdated > 0 {
+        let (there, _) = summary.members;
+        add(&format!(
+            "**{} of {there} runs are older than the program that wrote this page** (another solver or scene); \
+             `sandgate validate {}` computes them again.",
+            found.outdated, study.name
+        ));
+    }
+    add(study.about);
+    add(&format!(
+        "## Against the source\n\n{}",
+        metrics(&report.metrics)
+    ));
+    for figure in &report.figures {
+        add(&format!(
+            "![{}]({}_{}.svg)\n\n*{}*",
+            figure.name, study.name, figure.name, figure.caption
+        ));
+    }
+    for table in &report.tables {
+        add(&format!("## {}\n\n{}", table.title, markdown(table)));
+    }
+    if !report.notes.is_empty() {
+        add(&format!("## Remarks\n\n{}", report.notes.join("\n\n")));
+    }
+    add(&how(study, found, summary));
+    page.trim_end().to_owned() + "\n"
+}
+
+fn metrics(metrics: &[Metric]) -> String {
+    let row = |m: &Metric| {
+        let unit = if m.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", m.unit)
+        };
+        let reference = m.rule.reference();
+        let error = m.value.zip(reference).filter(|(_, r)| *r != 0.0);
+        vec![
+            m.what.clone(),
+            m.value
+                .map_or("-".to_owned(), |v| format!("{}{unit}", number(v))),
+            reference.map_or(String::new(), |r| format!("{}{unit}", number(r))),
+            error.map_or(String::new(), |(v, r)| {
+                format!("{:+.1} %", 100.0 * (v / r - 1.0))
+            }),
+            allowed(&m.rule),
+            word(m.verdict()).to_owned(),
+            m.source.clone(),
+        ]
+    };
+    let head = [
+        "quantity",
+        "computed",
+        "reference",
+        "error",
+        "allowed",
+        "verdict",
+        "source and reason",
+    ];
+    markdown(&Table {
+        title: String::new(),
+        head: head.map(str::to_owned).to_vec(),
+        rows: metrics.iter().map(row).collect(),
+    })
+}
+
+fn allowed(rule: &Rule) -> String {
+    match *rule {
+        Rule::Report(_) => String::new(),
+        Rule::AtMost(most) => format!("at most {}", number(most)),
+        Rule::AtLeast(least) => format!("at least {}", number(least)),
+        Rule::Near(_, tolerance) => format!("+- {}", number(tolerance)),
+        Rule::NearShare(_, share) => format!("+- {} %", number(100.0 * share)),
+        Rule::Between(low, high) => format!("{} to {}", number(low), number(high)),
+    }
+}
+
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Met => "met",
+        Verdict::FallsShort => "**falls short**",
+        Verdict::Reported => "reported",
+        Verdict::NoResult => "**no result**",
+    }
+}
+
+fn markdown(table: &Table) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let rule = vec!["---".to_owned(); table.head.len()];
+    let rows: String = table.rows.iter().map(|row| line(row)).collect();
+    format!("{}{}{rows}", line(&table.head), line(&rule))
+}
+
+/// How the page was made: command, sources, one line a member.
+fn how(study: &Study, found: &Found, summary: &Summary) -> String {
+    let quick = if summary.quick { " --quick" } else { "" };
+    let (there, all) = summary.members;
+    let mut text = format!(
+        "## How it was computed\n\n`sandgate validate {}{quick}`, {there} of {all} runs, {} s of CPU time, one thread a \
+         run; at most {} particles. Sources (hash of what can change a result): {}.\n\n",
+        study.name,
+        number(summary.cpu),
+        summary.particles,
+        if summary.sources.is_empty() {
+            "none".to_owned()
+        } else {
+            summary.sources.join(", ")
+        }
+    );
+    let row = |(member, found): (&Member, &Option<Recording>)| match found {
+        None => vec![
+            member.name.clone(),
+            "not run".to_owned(),
+            String::new(),
+            String::new(),
+            String::new(),
+            String::new(),
+        ],
+        Some(r) => vec![
+            member.name.clone(),
+            match &r.outcome {
+                Outcome::Failed(why) => {
+                    format!("failed: {}", why.replace('|', "/").replace('\n', " "))
+                }
+                Outcome::Finished => "finished".to_owned(),
+                Outcome::Running => "under way".to_owned(),
+            },
+            r.particles.to_string(),
+            number(r.time.last().copied().unwrap_or(0.0)),
+            r.steps.to_string(),
+            number(r.cpu),
+        ],
+    };
+    let head = [
+        "run",
+        "outcome",
+        "particles",
+        "simulated [s]",
+        "steps",
+        "CPU [s]",
+    ];
+    let table = Table {
+        title: String::new(),
+        head: head.map(str::to_owned).to_vec(),
+        rows: found
+            .members
+            .iter()
+            .zip(&found.recordings)
+            .map(row)
+            .collect(),
+    };
+    // GitHub and rustdoc fold this; elsewhere it is simply a table.
+    let _ = write!(
+        text,
+        "<details><summary>All runs</summary>\n\n{}\n</details>",
+        markdown(&table)
+    );
+    text
+}
+
+/// Writes the index of all studies from the pages that are there.
+///
+/// # Errors
+/// [`Error::File`].
+pub fn write_index(folder: &Path, studies: &[Study]) -> Result<(), Error> {
+    let mut rows = Vec::new();
+    for study in studies {
+        let page = std::fs::read_to_string(folder.join(format!("{}.md", study.name)));
+        rows.push(match page.ok().as_deref().and_then(Summary::read) {
+            Some(s) => vec![
+                format!("[{}]({}.md)", study.name, study.name),
+                study.title.to_owned(),
+                s.verdict(),
+                format!("{} of {}", s.members.0, s.members.1),
+                s.particles.to_string(),
+                number(s.cpu),
+                s.sources.join(", "),
+            ],
+            None => {
+                let mut row = vec![String::new(); 7];
+                row[..3].clone_from_slice(&[
+                    study.name.to_owned(),
+                    study.title.to_owned(),
+                    "not run yet".to_owned(),
+                ]);
+                row
+            }
+        });
+    }
+    let head = [
+        "study",
+        "what is compared",
+        "verdict",
+        "runs",
+        "largest [particles]",
+        "CPU [s]",
+        "sources",
+    ];
+    let table = Table {
+        title: String::new(),
+        head: head.map(str::to_owned).to_vec(),
+        rows,
+    };
+    let text = format!(
+        "{MADE}\n# Validation\n\n\
+         Sandgate against published data and exact solutions. Every figure and number on these pages is written by\n\
+         `sandgate validate`, from runs of the component; none is typed by hand. What falls short stands here as such.\n\n\
+         {}\n\
+         - **met**: inside the tolerance that stands, with its reason, beside the number.\n\
+         - **falls short**: outside of it.\n\
+         - **reported**: not judged: another model, a law for another geometry, or a figure for information.\n\n\
+         `sources` is a hash of all source files that can change a result, also in the program that ran them: runs of\n\
+         other sources are computed again. CPU times are of one thread a run. The published data and where they come from:\n\
+         [cases/reference](../../cases/reference/SOURCE.md).\n",
+        markdown(&table)
+    );
+    replace(&folder.join("README.md"), text.as_bytes())
+}

@@ -1,0 +1,380 @@
+//! `columns`: the six columns of [A] Table 3 in the plane, default scheme, five seeds each.
+
+use crate::validate::chart::{Chart, Curve, Look};
+use crate::validate::picture::{Panel, Picture};
+use crate::validate::report::number;
+use crate::validate::statistics::{first_reaching, mean, spread};
+use crate::validate::template::{Template, point, points, rectangle};
+use crate::validate::{
+    Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study, Table,
+};
+
+/// The study.
+pub(super) const STUDY: Study = Study {
+    name: "columns",
+    title: "Collapse of sand columns, planar: run-out, height, stopping, convergence",
+    about: "The six columns of Table 3 of Minatti and Paris [A] (Appl. Math. Modelling 39 (2015) 363-376): sand of 0.32 mm, \
+half-width r0 = 97.2 mm, height H0 = a r0, at [A]'s particle spacing, planar, released at t = 0 on a floor of the same \
+roughness. The default scheme; five seeds of the jittered start each, of which means and spread are taken (spread: standard \
+deviation over mean).\n\n\
+Run-out is (r - r0)/r0 of the front, the mean of both sides, at twice the stopping time 3 sqrt(H0/g) unless said otherwise. \
+It is judged against the published *planar* law, (1.2 to 1.8) a below a = 2.3 and (1.9 to 2.3) a^(2/3) above (channel \
+experiments: Lube et al. 2005, Phys. Rev. E 72, 041301; Lajeunesse et al. 2005, Phys. Fluids 17, 103302; the band is what \
+secondary sources make of their prefactors). Lube's *axisymmetric* law 1.24 a, 1.6 sqrt(a) above a = 1.7 (Lube, Huppert, \
+Sparks and Hallworth 2004, J. Fluid Mech. 508, 175-199), against which [A] compares its planar runs, stands beside it.",
+    members,
+    analyse,
+};
+
+const GRAVITY: f64 = 9.81;
+/// Half-width [m].
+const R0: f64 = 0.0972;
+const TEMPLATE: &str = include_str!("../../../cases/validation/column.toml");
+/// Kept at every communication point.
+pub(super) const SERIES: [&str; 4] = [
+    "gauge.left.front",
+    "gauge.right.front",
+    "gauge.centre.depth",
+    "energy.kinetic",
+];
+/// Snapshots, over sqrt(H0/g).
+const PICTURES: [f64; 5] = [0.0, 1.0, 2.0, 3.0, 6.0];
+/// Stopping time over sqrt(H0/g): Lube's and Lajeunesse's.
+const STOPPING: f64 = 3.0;
+
+/// A row of [A] Table 3.
+#[derive(Clone, Copy)]
+struct Column {
+    aspect: f64,
+    /// H0 [m].
+    height: f64,
+    /// dp [m].
+    spacing: f64,
+}
+
+const COLUMNS: [Column; 6] = [
+    column(0.19, 18.5e-3, 1.20e-3),
+    column(0.55, 53.5e-3, 2.20e-3),
+    column(0.90, 87.5e-3, 3.02e-3),
+    column(1.60, 155.5e-3, 3.24e-3),
+    column(2.75, 267.3e-3, 4.86e-3),
+    column(3.00, 291.6e-3, 4.86e-3),
+];
+
+const fn column(aspect: f64, height: f64, spacing: f64) -> Column {
+    Column {
+        aspect,
+        height,
+        spacing,
+    }
+}
+
+impl Column {
+    /// Time scale sqrt(H0/g) [s].
+    fn fall(&self) -> f64 {
+        (self.height / GRAVITY).sqrt()
+    }
+
+    fn name(&self, kind: &str, seed: u32) -> String {
+        format!("a{:.2}_{kind}seed{seed}", self.aspect)
+    }
+
+    /// Smallest and largest published planar run-out.
+    fn planar_band(&self) -> (f64, f64) {
+        let a = self.aspect;
+        if a < 2.3 {
+            (1.2 * a, 1.8 * a)
+        } else {
+            (1.9 * a.powf(2.0 / 3.0), 2.3 * a.powf(2.0 / 3.0))
+        }
+    }
+
+    /// Lube's axisymmetric run-out.
+    fn axisymmetric(&self) -> f64 {
+        let a = self.aspect;
+        if a < 1.7 { 1.24 * a } else { 1.6 * a.sqrt() }
+    }
+
+    fn member(&self, name: String, seed: u32, spacing: f64, until: f64) -> Result<Member, String> {
+        // Room for a run-out a quarter beyond the largest published one.
+        let reach = R0 * (1.0 + 1.25 * self.planar_band().1) + 10.0 * spacing;
+        let text = Template::new(TEMPLATE)?
+            .with("domain.lower", point(-reach, -8.0 * spacing))
+            .with(
+                "domain.upper",
+                point(reach, 1.2 * self.height + 8.0 * spacing),
+            )
+            .with("numerics.spacing", spacing)
+            .with("numerics.seed", i64::from(seed))
+            .with(
+                "bodies.column.box",
+                rectangle([-R0, 0.0], [R0, self.height]),
+            )
+            .with(
+                "walls.floor.polyline",
+                points(&[[-reach, 0.0], [reach, 0.0]]),
+            )
+            .with("run.step", self.fall() / 20.0)
+            .with("run.until", until)
+            .text()?;
+        let pictures = if seed == 1 {
+            PICTURES.map(|t| t * self.fall()).to_vec()
+        } else {
+            Vec::new()
+        };
+        Ok(Member::new(name, text, &SERIES, pictures))
+    }
+}
+
+fn members(effort: Effort) -> Result<Vec<Member>, String> {
+    let mut members = Vec::new();
+    let seeds = effort.pick(5, 2);
+    for column in COLUMNS {
+        // To ten stopping times, for the creep of the pile.
+        let until = effort.pick(10.0, 2.0) * STOPPING * column.fall();
+        let spacing = effort.pick(1.0, 2.5) * column.spacing;
+        for seed in 1..=seeds {
+            members.push(column.member(column.name("", seed), seed, spacing, until)?);
+        }
+    }
+    let middle = COLUMNS[2];
+    let until = 2.0 * STOPPING * middle.fall();
+    let spacing = effort.pick(0.5, 1.5) * middle.spacing;
+    for seed in 1..=effort.pick(3, 1) {
+        members.push(middle.member(middle.name("fine_", seed), seed, spacing, until)?);
+    }
+    Ok(members)
+}
+
+/// Front over time, mean of both sides [m].
+pub(super) fn front(recording: &Recording) -> Vec<(f64, f64)> {
+    let (left, right) = (
+        recording.curve("gauge.left.front"),
+        recording.curve("gauge.right.front"),
+    );
+    left.iter()
+        .zip(&right)
+        .map(|(l, r)| (l.0, 0.5 * (l.1 + r.1)))
+        .collect()
+}
+
+/// Run-out at a time [s].
+fn run_out(recording: &Recording, time: f64) -> Option<f64> {
+    let [left, right] = ["gauge.left.front", "gauge.right.front"].map(|g| recording.at(g, time));
+    Some((0.5 * (left? + right?) - R0) / R0)
+}
+
+/// What the seeds of one column gave.
+struct Seeds {
+    run_outs: Vec<f64>,
+    late: Vec<f64>,
+    heights: Vec<f64>,
+    stops: Vec<f64>,
+}
+
+fn seeds(results: &Results, column: &Column, kind: &str) -> Seeds {
+    let prefix = column.name(kind, 0);
+    let prefix = prefix.trim_end_matches('0');
+    let twice = 2.0 * STOPPING * column.fall();
+    let mut seeds = Seeds {
+        run_outs: Vec::new(),
+        late: Vec::new(),
+        heights: Vec::new(),
+        stops: Vec::new(),
+    };
+    for (_, recording) in results.starting(prefix) {
+        seeds.run_outs.extend(run_out(recording, twice));
+        seeds.late.extend(
+            recording
+                .time
+                .last()
+                .and_then(|&end| run_out(recording, end)),
+        );
+        seeds
+            .heights
+            .extend(recording.last("gauge.centre.depth").map(|h| h / R0));
+        // Stopped: 99 % of the way of the front done.
+        let front = front(recording);
+        let end = R0 + 0.99 * (front.last().map_or(R0, |p| p.1) - R0);
+        seeds
+            .stops
+            .extend(first_reaching(&front, end).map(|t| t / column.fall()));
+    }
+    seeds
+}
+
+fn analyse(results: &Results) -> Result<Report, String> {
+    let mut report = Report::default();
+    for column in &COLUMNS {
+        report.metrics.extend(judge(results, column));
+    }
+    report.metrics.push(convergence(results));
+    report.tables.push(other_laws(results));
+    report.figures.push(fronts(results)?);
+    for column in &COLUMNS {
+        report.figures.extend(pictures(results, column));
+    }
+    report.notes.push(
+        "A planar column is another experiment than a round one: its material cannot spread sideways. The planar law is the \
+         one that judges here; the axisymmetric one stands beside it because [A] compares with it."
+            .to_owned(),
+    );
+    Ok(report)
+}
+
+fn judge(results: &Results, column: &Column) -> Vec<Metric> {
+    let a = column.aspect;
+    let found = seeds(results, column, "");
+    let (low, high) = column.planar_band();
+    let early = mean(&found.run_outs);
+    let drift = mean(&found.late)
+        .zip(early)
+        .map(|(late, early)| (late / early - 1.0).abs());
+    vec![
+        Metric::new(
+            format!("a = {a:.2}: run-out"),
+            early,
+            Rule::Between(low, high),
+            "planar law, Lube 2005 and Lajeunesse 2005; the band is the spread of its printed prefactors",
+        ),
+        Metric::new(
+            format!("a = {a:.2}: run-out against Lube's axisymmetric law"),
+            early,
+            Rule::Report(Some(column.axisymmetric())),
+            "Lube et al. 2004, round columns: another geometry, not judged",
+        ),
+        Metric::new(
+            format!("a = {a:.2}: spread of run-outs"),
+            spread(&found.run_outs),
+            Rule::AtMost(0.03),
+            "what the arbitrary start may change: less than a third of the experiments' scatter of 10 %",
+        ),
+        Metric::new(
+            format!("a = {a:.2}: change of run-out from 2 to 10 stopping times"),
+            drift.filter(|_| results.effort == Effort::Full),
+            Rule::AtMost(0.005),
+            "a pile at rest does not creep",
+        ),
+    ]
+}
+
+fn convergence(results: &Results) -> Metric {
+    let column = &COLUMNS[2];
+    let coarse = mean(&seeds(results, column, "").run_outs);
+    let fine = mean(&seeds(results, column, "fine_").run_outs);
+    let change = coarse.zip(fine).map(|(c, f)| (f / c - 1.0).abs());
+    Metric::new(
+        "a = 0.90: change of run-out from dp to dp/2",
+        change,
+        Rule::AtMost(0.03),
+        "resolution is no part of the result; three seeds at dp/2",
+    )
+}
+
+/// Heights and stopping times beside published laws: for other geometries or from secondary sources, so not judged.
+fn other_laws(results: &Results) -> Table {
+    let text = |value: Option<f64>| value.map_or("-".to_owned(), number);
+    let rows = COLUMNS.iter().map(|column| {
+        let found = seeds(results, column, "");
+        let a = column.aspect;
+        let lube = if a < 1.0 { a } else { 0.88 * a.powf(1.0 / 6.0) };
+        let planar = if a < 0.7 { a } else { a.cbrt() };
+        vec![
+            format!("{a:.2}"),
+            text(mean(&found.heights)),
+            number(planar),
+            number(lube),
+            text(mean(&found.stops)),
+            "3 to 3.3".to_owned(),
+            text(mean(&found.run_outs)),
+            text(spread(&found.run_outs)),
+        ]
+    });
+    let head = [
+        "a",
+        "height / r0",
+        "Lajeunesse 2005, planar",
+        "Lube 2004, axisymmetric",
+        "stops at t sqrt(g/H0)",
+        "experiments",
+        "run-out",
+        "spread",
+    ];
+    Table {
+        title: "Heights and stopping times, means of seeds, beside published laws".to_owned(),
+        head: head.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+/// Front histories in the manner of [A] Fig. 10.
+fn fronts(results: &Results) -> Result<Figure, String> {
+    let mut curves = Vec::new();
+    for (colour, column) in COLUMNS.iter().enumerate() {
+        let Some(recording) = results.finished(&column.name("", 1)) else {
+            continue;
+        };
+        let points = front(recording)
+            .into_iter()
+            .map(|(t, x)| (t / column.fall(), x / R0));
+        let points: Vec<_> = points.filter(|p| p.0 <= 10.0).collect();
+        curves.push(Curve::new(
+            format!("a = {:.2}", column.aspect),
+            points,
+            Look::Line,
+            colour,
+        ));
+        let (low, high) = column.planar_band();
+        let law = [low, high].map(|r| (10.0, 1.0 + r)).to_vec();
+        curves.push(Curve::new(
+            format!("a = {:.2}, planar law", column.aspect),
+            law,
+            Look::Dots,
+            colour,
+        ));
+    }
+    let chart = Chart {
+        x: "t / sqrt(H0/g)".to_owned(),
+        y: "front / r0".to_owned(),
+        curves,
+    };
+    Ok(Figure {
+        name: "fronts".to_owned(),
+        caption: "Front over time of the first seed (as [A] Fig. 10); dots: the ends of the planar law's band.".to_owned(),
+        svg: chart.svg()?,
+    })
+}
+
+/// Particles of the first seed, as [A] Figs. 11 and 12.
+fn pictures(results: &Results, column: &Column) -> Option<Figure> {
+    let recording = results.finished(&column.name("", 1))?;
+    let reach = front(recording).iter().fold(R0, |most, p| most.max(p.1)) * 1.05;
+    let panel = |s: &crate::validate::Snapshot| Panel {
+        caption: format!(
+            "t = {} sqrt(H0/g)",
+            number((s.time / column.fall() * 100.0).round() / 100.0)
+        ),
+        particles: s
+            .position
+            .iter()
+            .zip(&s.velocity)
+            .map(|(x, v)| [x[0], x[1], v[0].hypot(v[1])])
+            .collect(),
+    };
+    let picture = Picture {
+        lower: [-reach, 0.0],
+        upper: [reach, 1.05 * column.height],
+        spacing: column.spacing,
+        most: (GRAVITY * column.height).sqrt(),
+        label: "speed [m/s]".to_owned(),
+        panels: recording.snapshots.iter().map(panel).collect(),
+    };
+    Some(Figure {
+        name: format!("a{:03.0}", 100.0 * column.aspect),
+        caption: format!(
+            "a = {:.2}: particles, coloured by speed up to sqrt(g H0).",
+            column.aspect
+        ),
+        svg: picture.svg(),
+    })
+}

@@ -1,0 +1,15 @@
+//! The studies, one a file. A new one: its file, a line of [`ALL`], and its reference data under cases/reference.
+
+mod columns;
+mod incline;
+
+use super::Study;
+
+/// All studies, in the order in which they are listed and run.
+pub const ALL: [Study; 2] = [incline::STUDY, columns::STUDY];
+
+/// A study by name.
+#[must_use]
+pub fn by_name(name: &str) -> Option<Study> {
+    ALL.into_iter().find(|study| study.name == name)
+}
