@@ -144,7 +144,13 @@ impl Summary {
     #[must_use]
     pub fn verdict(&self) -> String {
         let judged = self.met + self.short + self.missing;
-        let mut text = match (self.short, self.missing) {
+        if self.quick {
+            return format!(
+                "quick runs, not judged ({} of {judged} inside their tolerance)",
+                self.met
+            );
+        }
+        match (self.short, self.missing) {
             (0, 0) if judged > 0 => format!("met ({judged} of {judged})"),
             (0, 0) => "reported only".to_owned(),
             (0, missing) => format!("incomplete ({missing} of {judged} without a result)"),
@@ -152,11 +158,7 @@ impl Summary {
             (short, missing) => {
                 format!("falls short ({short} of {judged}, {missing} without a result)")
             }
-        };
-        if self.quick {
-            text.push_str(", quick runs only");
         }
-        text
     }
 }
 
@@ -377,6 +379,12 @@ fn how(study: &Study, found: &Found, summary: &Summary) -> String {
 /// # Errors
 /// [`Error::File`].
 pub fn write_index(folder: &Path, studies: &[Study]) -> Result<(), Error> {
+    replace(&folder.join("README.md"), index(folder, studies).as_bytes())
+}
+
+/// The text of the index of all studies, from the pages in a folder.
+#[must_use]
+pub fn index(folder: &Path, studies: &[Study]) -> String {
     let mut rows = Vec::new();
     for study in studies {
         let page = std::fs::read_to_string(folder.join(format!("{}.md", study.name)));
@@ -415,7 +423,7 @@ pub fn write_index(folder: &Path, studies: &[Study]) -> Result<(), Error> {
         head: head.map(str::to_owned).to_vec(),
         rows,
     };
-    let text = format!(
+    format!(
         "{MADE}\n# Validation\n\n\
          Sandgate against published data and exact solutions. Every figure and number on these pages is written by\n\
          `sandgate validate`, from runs of the component; none is typed by hand. What falls short stands here as such.\n\n\
@@ -427,6 +435,5 @@ pub fn write_index(folder: &Path, studies: &[Study]) -> Result<(), Error> {
          other sources are computed again. CPU times are of one thread a run. The published data and where they come from:\n\
          [cases/reference](../../cases/reference/SOURCE.md).\n",
         markdown(&table)
-    );
-    replace(&folder.join("README.md"), text.as_bytes())
+    )
 }

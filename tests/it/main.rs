@@ -24,4 +24,6 @@ mod scenes;
 mod shared_library;
 #[path = "../contract/mod.rs"]
 mod suite;
+#[cfg(feature = "cli")]
+mod validate;
 mod variables;

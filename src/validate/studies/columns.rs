@@ -325,7 +325,8 @@ fn fronts(results: &Results) -> Result<Figure, String> {
             colour,
         ));
         let (low, high) = column.planar_band();
-        let law = [low, high].map(|r| (10.0, 1.0 + r)).to_vec();
+        let end = points_end(recording, column);
+        let law = [low, high].map(|r| (end, 1.0 + r)).to_vec();
         curves.push(Curve::new(
             format!("a = {:.2}, planar law", column.aspect),
             law,
@@ -343,6 +344,12 @@ fn fronts(results: &Results) -> Result<Figure, String> {
         caption: "Front over time of the first seed (as [A] Fig. 10); dots: the ends of the planar law's band.".to_owned(),
         svg: chart.svg()?,
     })
+}
+
+/// Where the laws are drawn: at the end of the curve, over sqrt(H0/g).
+fn points_end(recording: &Recording, column: &Column) -> f64 {
+    let end = recording.time.last().map_or(10.0, |t| t / column.fall());
+    end.min(10.0)
 }
 
 /// Particles of the first seed, as [A] Figs. 11 and 12.
@@ -364,7 +371,8 @@ fn pictures(results: &Results, column: &Column) -> Option<Figure> {
     let picture = Picture {
         lower: [-reach, 0.0],
         upper: [reach, 1.05 * column.height],
-        spacing: column.spacing,
+        // Of the run, which may be a coarse one.
+        spacing: (2.0 * R0 * column.height / recording.particles.max(1) as f64).sqrt(),
         most: (GRAVITY * column.height).sqrt(),
         label: "speed [m/s]".to_owned(),
         panels: recording.snapshots.iter().map(panel).collect(),
