@@ -396,6 +396,7 @@ fn pages_say_what_was_found_and_whether_it_is_current() {
     assert!(page().contains("4 of 4 runs are older"), "{}", page());
     page::write(&pages, &STUDY, Effort::Quick, &look(&newer)).unwrap();
     assert!(page().contains("judge nothing"), "{}", page());
+    page::write(&pages, &STUDY, Effort::Full, &look(&newer)).unwrap();
 
     page::write_index(&pages, &[STUDY]).unwrap();
     let index = std::fs::read_to_string(pages.join("README.md")).unwrap();
