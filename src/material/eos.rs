@@ -1,22 +1,43 @@
-//! Pressure of a dense granular medium with dilatancy and grain compressibility ([A] eqs. 41, 43, 44).
+//! Pressure of a dense granular medium with dilatancy and grain compressibility ([A] eqs. 8, 41, 43, 44).
 //!
-//! Symbols: x = rho_s/rho_s0 compression of the grains, r = rho/(rho_s0 phi_max), gamma shear rate, D dimension,
-//! B = gamma^2 rho_s0 K_t (phi_max - phi_min)^2 d0^2 / phi_max^2.
+//! Symbols: x = rho_s/rho_s0 compression of the grains, r = rho/(rho_s0 phi_max), q = phi_min/phi_max, gamma shear rate,
+//! D dimension, G = gamma^2 rho_s0 K_t d0^2, B = (1 - q)^2 G, e = 0 in the plane and 1/3 in space.
 //!
-//! (x - 1)(x - r)^2 = B x^2 in the plane (A.44), B x^(7/3) in space (A.43 with the cube root); p = (x - 1)/K_t.
-//! The physical root is the largest one, x >= max(1, r): there the left side grows from 0, so it exists and is unique.
+//! rho = phi(I) rho_s with phi = max(phi_min, phi_max - (phi_max - phi_min) I), p = (x - 1)/K_t and
+//! d = d0 x^(-1/D) give I^2 = G x^e/(x - 1) and
+//!
+//!   (x - 1)(x - r)^2 = B x^(2 + e)     where I <= 1 (A.44 in the plane; A.43 with the cube root in space),
+//!   x = r/q                            where I >= 1: the grains stand at phi_min, whatever the shear rate.
+//!
+//! x phi(I(x)) grows with x, from phi_min at x -> 1, so: for r <= q there is no pressure (x = 1: grains do not touch,
+//! the material has parted); above, one root, x >= max(1, r), the smaller of the two. Pressure is continuous in r and B.
 
-/// Largest root x of the closing relation for r >= 0 and B >= 0 in D dimensions.
-///
-/// Newton from an upper bound: the logarithm of the left over the right side is concave and rising on the branch, and
-/// every iterate is kept above max(1, r), so it cannot leave it.
+/// The root x >= 1 of the closing relation for r >= 0, B >= 0 and 0 < q < 1 in D dimensions.
 #[inline]
 #[must_use]
-pub fn grain_compression<const D: usize>(r: f64, b: f64) -> f64 {
-    let low = r.max(1.0);
-    if b <= 0.0 {
-        return low;
+pub fn grain_compression<const D: usize>(r: f64, b: f64, q: f64) -> f64 {
+    let loosest = r / q;
+    if loosest <= 1.0 {
+        return 1.0;
     }
+    if b <= 0.0 {
+        return r.max(1.0);
+    }
+    let root = if D == 2 { 1.0 } else { loosest.cbrt() };
+    // I >= 1 at phi_min.
+    if b * root >= (1.0 - q) * (1.0 - q) * (loosest - 1.0) {
+        return loosest;
+    }
+    unclamped::<D>(r, b)
+}
+
+/// Largest root x for phi = phi_max - (phi_max - phi_min) I, r >= 0 and B > 0.
+///
+/// The left side grows from 0 at max(1, r), so the root exists and is unique there. Newton from an upper bound: the
+/// logarithm of the left over the right side is concave and rising on the branch, and every iterate is kept above
+/// max(1, r), so it cannot leave it.
+fn unclamped<const D: usize>(r: f64, b: f64) -> f64 {
+    let low = r.max(1.0);
     // Work with y = x - low > 0 to keep digits when x is close to 1.
     let (c1, c2) = (low - 1.0, low - r);
     // Large B: x = B in the plane, B^(3/2) in space.
@@ -63,12 +84,12 @@ mod tests {
                 let b = 10f64.powf(-14.0 + 15.0 * f64::from(m) / 59.0);
                 for (x, res) in [
                     (
-                        grain_compression::<2>(r, b),
-                        residual::<2>(r, b, grain_compression::<2>(r, b)),
+                        unclamped::<2>(r, b),
+                        residual::<2>(r, b, unclamped::<2>(r, b)),
                     ),
                     (
-                        grain_compression::<3>(r, b),
-                        residual::<3>(r, b, grain_compression::<3>(r, b)),
+                        unclamped::<3>(r, b),
+                        residual::<3>(r, b, unclamped::<3>(r, b)),
                     ),
                 ] {
                     assert!(x > r.max(1.0), "r {r} B {b}: {x}");
@@ -80,9 +101,73 @@ mod tests {
         }
     }
 
+    const Q: f64 = 0.5 / 0.6;
+
     #[test]
     fn without_shear_the_grains_carry_only_compression() {
-        assert_eq!(grain_compression::<2>(0.9, 0.0), 1.0);
-        assert_eq!(grain_compression::<2>(1.02, 0.0), 1.02);
+        assert_eq!(grain_compression::<2>(0.9, 0.0, Q), 1.0);
+        assert_eq!(grain_compression::<2>(1.02, 0.0, Q), 1.02);
+    }
+
+    /// x phi(I(x)) = r phi_max with the clamped phi(I), over r phi_max.
+    fn closing<const D: usize>(r: f64, b: f64, x: f64) -> f64 {
+        let e = if D == 2 { 0.0 } else { 1.0 / 3.0 };
+        let inertial = (b * x.powf(e) / (x - 1.0)).sqrt() / (1.0 - Q);
+        let phi = (1.0 - (1.0 - Q) * inertial).max(Q);
+        x * phi / r - 1.0
+    }
+
+    fn solves<const D: usize>() {
+        for k in 0..200 {
+            let r = Q + 1e-4 + 0.4 * f64::from(k) / 199.0;
+            for m in 0..60 {
+                let b = 10f64.powf(-14.0 + 15.0 * f64::from(m) / 59.0);
+                let x = grain_compression::<D>(r, b, Q);
+                assert!(x >= r.max(1.0), "{r} {b}: {x}");
+                // x - 1 has lost digits in x: 1e-16/(x - 1) relative in I^2.
+                let lost = 1e-15 / (x - 1.0);
+                let residual = closing::<D>(r, b, x);
+                assert!(residual.abs() < 1e-9 + lost, "{r} {b} {x}: {residual}");
+                // Never looser than phi_min.
+                assert!(r / x >= Q * (1.0 - 1e-14));
+            }
+        }
+    }
+
+    #[test]
+    fn the_root_solves_the_law_with_the_smallest_volume_fraction() {
+        solves::<2>();
+        solves::<3>();
+    }
+
+    #[test]
+    fn pressure_is_continuous_and_grows_with_density_and_shear() {
+        let x = |r: f64, b: f64| grain_compression::<2>(r, b, Q);
+        for b in [0.0, 1e-8, 1e-6, 1e-4, 1e-2] {
+            let mut last = 1.0;
+            for k in 0..20_000 {
+                let r = 0.7 + 0.4 * f64::from(k) / 20_000.0;
+                let now = x(r, b);
+                // The steepest is x = r/q.
+                assert!(now >= last && now - last <= 1.01 * 2e-5 / Q, "{r} {b}");
+                last = now;
+            }
+        }
+        for r in [0.8, 0.9, 1.01] {
+            let mut last = 1.0;
+            for k in 0..2000 {
+                let now = x(r, 10f64.powf(-12.0 + 12.0 * f64::from(k) / 2000.0));
+                assert!(now >= last * (1.0 - 1e-15), "{r}: {last} to {now}");
+                last = now;
+            }
+        }
+    }
+
+    #[test]
+    fn below_the_smallest_volume_fraction_there_is_no_pressure() {
+        for b in [0.0, 1e-6, 1.0] {
+            assert_eq!(grain_compression::<2>(Q, b, Q), 1.0);
+            assert_eq!(grain_compression::<3>(0.5, b, Q), 1.0);
+        }
     }
 }

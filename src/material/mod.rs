@@ -1,16 +1,26 @@
 //! Rank 1: materials. One readable file per friction law, one enum that lists them, and what all materials share:
-//! grains ([`Grains`]), cohesion, the pressure law.
+//! grains ([`Grains`]), cohesion, bulk friction, what happens beyond the dense regime, the pressure law.
 //!
 //! Add a law: a file with its parameters, equations, `impl Friction` and tests, and one line in [`Law`].
 
+mod barker_gray;
+mod bulk_friction;
+mod constant_friction;
 mod eos;
 mod grains;
+#[cfg(test)]
+mod laws_tests;
 mod mu_i;
 mod regularised;
+mod well_posed;
 
+pub use barker_gray::BarkerGray;
+pub use bulk_friction::bulk_pressure;
+pub use constant_friction::{AngleMatch, ConstantFriction};
 pub use eos::grain_compression;
 pub use grains::Grains;
-pub use mu_i::MuI;
+pub use mu_i::{MuI, SAND_LAYER_FACTOR};
+pub use well_posed::{ill_posedness, neutral_inertial_numbers};
 
 /// A friction law mu(I): shear stress over pressure against the inertial number I >= 0. Dimensionless.
 pub trait Friction {
@@ -18,6 +28,9 @@ pub trait Friction {
     fn friction(&self, inertial_number: f64) -> f64;
     /// d mu/dI [1].
     fn slope(&self, inertial_number: f64) -> f64;
+    /// What people call the static friction coefficient [1]: mu(0), or of a law that vanishes at rest the one it is
+    /// made from. Scales the cap of the viscosity.
+    fn static_friction(&self) -> f64;
     /// The I >= 0 with mu(I) + a I = y for a > 0; 0 where y <= mu(0) [1].
     fn resolvent(&self, a: f64, y: f64) -> f64;
 }
@@ -41,30 +54,49 @@ pub trait Rheology {
 pub enum Law {
     /// Dense granular flow, mu(I) ([A]).
     MuI(MuI),
+    /// Mohr-Coulomb's angle, no rate dependence.
+    ConstantFriction(ConstantFriction),
+    /// mu(I) without a yield stress, well-posed at low I.
+    BarkerGray(BarkerGray),
+}
+
+/// Calls a method of whichever law it is: a branch per particle, no pointer.
+macro_rules! of_law {
+    ($self:ident, $law:ident => $call:expr) => {
+        match $self {
+            Law::MuI($law) => $call,
+            Law::ConstantFriction($law) => $call,
+            Law::BarkerGray($law) => $call,
+        }
+    };
 }
 
 impl Friction for Law {
     #[inline]
     fn friction(&self, inertial_number: f64) -> f64 {
-        match self {
-            Law::MuI(law) => law.friction(inertial_number),
-        }
+        of_law!(self, law => law.friction(inertial_number))
     }
 
     #[inline]
     fn slope(&self, inertial_number: f64) -> f64 {
-        match self {
-            Law::MuI(law) => law.slope(inertial_number),
-        }
+        of_law!(self, law => law.slope(inertial_number))
+    }
+
+    #[inline]
+    fn static_friction(&self) -> f64 {
+        of_law!(self, law => law.static_friction())
     }
 
     #[inline]
     fn resolvent(&self, a: f64, y: f64) -> f64 {
-        match self {
-            Law::MuI(law) => law.resolvent(a, y),
-        }
+        of_law!(self, law => law.resolvent(a, y))
     }
 }
+
+/// Default of [`Material::parted_density`]. A flat face that parts from another loses half its support in the sum that
+/// density follows; what lies lower is corners and single grains. They carry no stress, but volumes m/rho would grow
+/// without bound when the last neighbours leave, and with them every weight.
+pub const PARTED_DENSITY: f64 = 0.5;
 
 /// A material: grains, a friction law, and what is added to it. tau = cohesion + mu(I) p.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,8 +105,13 @@ pub struct Material {
     pub grains: Grains,
     /// Friction law.
     pub law: Law,
-    /// Shear strength without pressure >= 0 [Pa].
+    /// Shear strength without pressure >= 0 [Pa]. It is no tensile strength: pressure never falls below 0, so material
+    /// that is pulled parts, and parted material carries nothing.
     pub cohesion: f64,
+    /// Bulk friction coefficient mu_b >= 0 [1]; 0 is none.
+    pub bulk_friction: f64,
+    /// Lowest density over rest density that is kept track of [1], above 0 and below phi_min/phi_max: see [`Material::is_dense`].
+    pub parted_density: f64,
 }
 
 impl Material {
@@ -106,6 +143,8 @@ impl Material {
             },
             law: Law::MuI(law),
             cohesion: 0.0,
+            bulk_friction: 0.0,
+            parted_density: PARTED_DENSITY,
         }
     }
 
@@ -121,11 +160,20 @@ impl Material {
         self.rest_density() + load / (sound_speed * sound_speed)
     }
 
-    /// The stress that scales the cap of the viscosity [Pa]: the yield stress.
+    /// Whether grains at this density [kg/m^3] touch: rho >= phi_min rho_s0. Looser material is parted: p = 0 and tau = 0
+    /// (its cohesion too) until it is this dense again.
+    #[inline]
+    #[must_use]
+    pub fn is_dense(&self, density: f64) -> bool {
+        density >= self.grains.phi_min * self.grains.density
+    }
+
+    /// The stress that scales the cap of the viscosity [Pa]: cohesion + mu_s p. It is the yield stress for laws that
+    /// have one.
     #[inline]
     #[must_use]
     pub fn strength(&self, p: f64) -> f64 {
-        self.yield_stress(p)
+        self.cohesion + self.law.static_friction() * p.max(0.0)
     }
 }
 
@@ -173,25 +221,50 @@ impl Rheology for Material {
 mod tests {
     use super::*;
 
+    /// Every law, dry and sticky.
+    fn materials() -> Vec<Material> {
+        let sand = Material::sand_04();
+        let high = MuI {
+            mu_inf: 0.05,
+            ..MuI::glass_beads()
+        };
+        let laws = [
+            sand.law,
+            Law::MuI(high),
+            Law::MuI(MuI::sand_08().of_layer(0.2)),
+            Law::ConstantFriction(ConstantFriction { mu: 0.34 }),
+            Law::BarkerGray(BarkerGray::new(high).unwrap()),
+        ];
+        let of = |law| {
+            [0.0, 40.0].map(|cohesion| Material {
+                law,
+                cohesion,
+                ..sand.clone()
+            })
+        };
+        laws.into_iter().flat_map(of).collect()
+    }
+
     #[test]
     fn resolvent_solves_its_equation() {
-        let dry = Material::sand_04();
-        let sticky = Material {
-            cohesion: 40.0,
-            ..dry.clone()
-        };
-        for m in [dry, sticky] {
+        for m in materials() {
             for p in [0.0, 1e-3, 1.0, 100.0, 5000.0] {
                 for r in [0.1, 10.0, 1e4] {
-                    for x in [0.5, 0.7, 1.0, 3.0] {
-                        for correction in [0.8, 1.0, 3.0] {
-                            let x = x * p + 0.9 * m.cohesion;
+                    for correction in [0.8, 1.0, 3.0] {
+                        let mut last = 0.0;
+                        for x in [0.2, 0.5, 0.7, 1.0, 3.0] {
+                            let x = x * p + (0.9 + x) * m.cohesion;
                             let q = m.resolvent(x, r, p, correction);
+                            assert!(q >= last, "{m:?} {p} {r} {x}: {last} to {q}");
+                            last = q;
                             if x <= m.yield_stress(p) {
                                 assert_eq!(q, 0.0);
                             } else {
                                 let back = m.shear_stress(q, p, correction) + r * q;
-                                assert!((back / x - 1.0).abs() < 1e-12, "{p} {r} {x}: {back}");
+                                assert!(
+                                    (back / x - 1.0).abs() < 1e-12,
+                                    "{m:?} {p} {r} {x}: {back}"
+                                );
                             }
                         }
                     }
@@ -202,11 +275,26 @@ mod tests {
 
     #[test]
     fn slope_is_the_derivative_of_the_stress() {
-        let m = Material::sand_08();
-        for g in [0.01, 1.0, 50.0] {
-            let at = |g| m.shear_stress(g, 300.0, 1.1);
-            let d = (at(g * 1.000_01) - at(g * 0.999_99)) / (g * 2e-5);
-            assert!((m.shear_stress_slope(g, 300.0, 1.1) / d - 1.0).abs() < 1e-6);
+        for m in materials() {
+            for g in [0.01, 1.0, 50.0] {
+                let at = |g| m.shear_stress(g, 300.0, 1.1);
+                let d = (at(g * 1.000_01) - at(g * 0.999_99)) / (g * 2e-5);
+                let slope = m.shear_stress_slope(g, 300.0, 1.1);
+                assert!(
+                    (slope - d).abs() <= 1e-6 * d + 1e-8 / g,
+                    "{m:?}: {slope} for {d}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn cohesion_is_the_strength_without_pressure() {
+        for m in materials() {
+            assert_eq!(m.yield_stress(0.0), m.cohesion);
+            assert_eq!(m.yield_stress(-5.0), m.cohesion);
+            assert_eq!(m.strength(0.0), m.cohesion);
+            assert!(m.strength(100.0) >= m.yield_stress(100.0));
         }
     }
 }

@@ -13,7 +13,7 @@ impl Material {
             return 0.0;
         }
         let eta0 = self.viscosity_above_yield(gamma, p);
-        let p_0 = ((tau_0 - self.cohesion) / self.law.friction(0.0)).max(f64::MIN_POSITIVE);
+        let p_0 = ((tau_0 - self.cohesion) / self.law.static_friction()).max(f64::MIN_POSITIVE);
         let reference = self.viscosity_above_yield(gamma, p_0) / tau_0;
         // ln of the factor that makes the relative error independent of pressure; m_p >= 0.
         let shift = (reference * gamma).ln_1p() - (eta0 / tau_y * gamma).ln_1p();

@@ -1,7 +1,7 @@
 //! Per particle: density, relaxed strain rate, pressure from the equation of state, viscosity from the rheology
 //! (docs/theory.md, E5 and E6). No neighbours here.
 
-use crate::material::{Friction, Grains, Material, Rheology, grain_compression};
+use crate::material::{Friction, Grains, Material, Rheology, bulk_pressure, grain_compression};
 use crate::state::State;
 
 use super::numerics::Scheme;
@@ -10,12 +10,8 @@ use super::{Solver, SolverError};
 /// Shear rates below this count as none [1/s]: far below any that matters, far above rounding.
 const STILL: f64 = 1e-12;
 
-/// Lowest density over the rest density [1]. A flat face that parts from another loses half its support; what lies
-/// lower is corners and single grains. They carry no stress, but volumes m/rho would grow without bound when the
-/// last neighbours leave, and with them every weight.
-const PARTED: f64 = 0.5;
-
 /// Pressure, viscosity and inertial number of one particle.
+#[derive(Default)]
 struct Response {
     pressure: f64,
     viscosity: f64,
@@ -39,8 +35,8 @@ impl<const D: usize> Solver<D> {
                     position: crate::solver::three(&grains.position[i]),
                 });
             }
-            let parted = PARTED * self.materials[grains.phase[i] as usize].rest_density();
-            grains.density[i] = rho.max(parted);
+            let material = &self.materials[grains.phase[i] as usize];
+            grains.density[i] = rho.max(material.parted_density * material.rest_density());
             let rate = k.correction * k.shear;
             grains.relaxed_shear[i] += relax * (rate - grains.relaxed_shear[i]);
         }
@@ -61,6 +57,9 @@ impl<const D: usize> Solver<D> {
         self.viscosity.resize(n, 0.0);
         self.pair_viscosity.resize(n, 0.0);
         self.inertial_number.resize(n, 0.0);
+        if self.materials.iter().any(|m| m.bulk_friction > 0.0) {
+            self.normal_pressure.resize(n, 0.0);
+        }
         for i in 0..n {
             let k = self.kinematics[i];
             let response = self.granular(
@@ -71,6 +70,17 @@ impl<const D: usize> Solver<D> {
                 k.correction,
             );
             self.pressure[i] = response.pressure;
+            if let Some(p) = self.normal_pressure.get_mut(i) {
+                let m = &self.materials[state.grains.phase[i] as usize];
+                *p = response.pressure
+                    + bulk_pressure(
+                        m.bulk_friction,
+                        response.pressure,
+                        k.divergence,
+                        k.correction * k.shear,
+                        state.grains.density[i] * self.kernel.h * self.numerics.sound_speed,
+                    );
+            }
             self.viscosity[i] = response.viscosity;
             self.inertial_number[i] = response.inertial_number;
             self.pair_viscosity[i] = match self.numerics.scheme {
@@ -93,17 +103,18 @@ impl<const D: usize> Solver<D> {
         let rest = m.rest_density();
         let compressibility = 1.0 / (rest * c0 * c0);
         let b = m.grains.dilatancy_factor(compressibility) * relaxed * relaxed;
-        let x = grain_compression::<D>(rho / rest, b);
+        let x = grain_compression::<D>(rho / rest, b, m.grains.phi_min / m.grains.phi_max);
         let pressure = (x - 1.0) / compressibility;
-        if pressure <= 0.0 {
-            return Response {
-                pressure: 0.0,
-                viscosity: 0.0,
-                inertial_number: 0.0,
-            };
+        // Parted material carries nothing; dense material without pressure still has its cohesion.
+        if pressure <= 0.0 && (m.cohesion == 0.0 || !m.is_dense(rho)) {
+            return Response::default();
         }
         let correction = correction * Grains::compressed_time_factor::<D>(x);
-        let inertial_number = correction * shear * m.grains.inertial_time(pressure);
+        let inertial_number = if pressure > 0.0 {
+            correction * shear * m.grains.inertial_time(pressure)
+        } else {
+            0.0
+        };
         let viscosity = match self.numerics.scheme {
             Scheme::Implicit => {
                 let cap = self.numerics.cap_time * m.strength(pressure);
@@ -117,7 +128,7 @@ impl<const D: usize> Solver<D> {
                 shear,
                 pressure,
                 self.numerics.cap_time,
-                m.law.friction(0.0) * self.reference_pressure(m),
+                m.law.static_friction() * self.reference_pressure(m),
             ),
         };
         Response {

@@ -162,7 +162,7 @@ impl<const D: usize> Solver<D> {
                     let seen = |a: Vector<D>| -> Vector<D> {
                         projection.map_or(a, |n| scale(dot(&n, &a), &n))
                     };
-                    let mut force = scale(-2.0 * self.pressure[i], &g);
+                    let mut force = scale(-2.0 * self.normal_pressure()[i], &g);
                     let factor = if viscous {
                         force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau[i], &g))));
                         share

@@ -141,6 +141,8 @@ pub struct Solver<const D: usize> {
     kinematics: Vec<Kinematics>,
     volume: Vec<f64>,
     pressure: Vec<f64>,
+    /// Pressure with bulk friction, what momentum feels [Pa]; empty unless a material has bulk friction.
+    normal_pressure: Vec<f64>,
     viscosity: Vec<f64>,
     pair_viscosity: Vec<f64>,
     inertial_number: Vec<f64>,
@@ -194,6 +196,7 @@ impl<const D: usize> Solver<D> {
             kinematics: Vec::new(),
             volume: Vec::new(),
             pressure: Vec::new(),
+            normal_pressure: Vec::new(),
             viscosity: Vec::new(),
             pair_viscosity: Vec::new(),
             inertial_number: Vec::new(),
@@ -392,6 +395,15 @@ impl<const D: usize> Solver<D> {
     #[must_use]
     pub fn pressure(&self) -> &[f64] {
         &self.pressure
+    }
+
+    /// What momentum feels of the pressure of each particle: with bulk friction, where a material has it [Pa].
+    pub(crate) fn normal_pressure(&self) -> &[f64] {
+        if self.normal_pressure.is_empty() {
+            &self.pressure
+        } else {
+            &self.normal_pressure
+        }
     }
 
     /// Inertial number of each particle [1].

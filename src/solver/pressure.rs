@@ -41,7 +41,7 @@ impl<const D: usize> Solver<D> {
                 let mut rows = std::mem::take(&mut block.wall_rows);
                 for w in &mut rows {
                     let i = first + w.row as usize;
-                    let p = self.pressure[i];
+                    let p = self.normal_pressure()[i];
                     let a = -2.0 * p * dt * self.specific_volume(state, i);
                     let o = &mut out[w.row as usize];
                     let eta = self.pair_viscosity[i];
@@ -83,6 +83,8 @@ impl<const D: usize> Solver<D> {
         let damp = numerics.artificial_viscosity * self.kernel.h * c0;
         let gate = 0.5 * numerics.diffusion_gate_time;
         let head = 1.0 / (rho * self.gravity_norm * numerics.spacing).max(f64::MIN_POSITIVE);
+        let normal = self.normal_pressure();
+        let ni = normal[i];
         let mut force = [0.0; D];
         let mut diffusion = 0.0;
         let range = block.pair_range(row);
@@ -90,8 +92,9 @@ impl<const D: usize> Solver<D> {
             let j = pair.j as usize;
             let pj = self.pressure[j];
             let sum = pi + pj;
+            let push = ni + normal[j];
             for k in 0..D {
-                force[k] -= sum * pair.g[k];
+                force[k] -= push * pair.g[k];
             }
             if numerics.artificial_viscosity > 0.0 {
                 // [A] eq. 38: (v.x)/r^2 = (v.g) F/|g|^2, on approaching and receding pairs alike.

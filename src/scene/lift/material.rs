@@ -47,9 +47,9 @@ impl Lift<'_> {
             value
         };
         let p = preset.as_ref().map(|p| &p.grains);
-        let law = preset.as_ref().map(|p| {
-            let Law::MuI(law) = p.law;
-            law
+        let law = preset.as_ref().map(|p| match p.law {
+            Law::MuI(law) => law,
+            _ => MuI::sand_04(),
         });
         let tan = |a: &At<crate::scene::raw::Angle>| a.value.0.tan();
         let mu_s = value(
@@ -84,6 +84,7 @@ impl Lift<'_> {
             mu_s: mu_s?,
             mu_2: mu_2?,
             inertial_number_scale: inertial_number_scale?,
+            mu_inf: 0.0,
         };
         let grains = Grains {
             diameter: grain_diameter?,
@@ -97,6 +98,8 @@ impl Lift<'_> {
             grains,
             law: Law::MuI(law),
             cohesion: 0.0,
+            bulk_friction: 0.0,
+            parted_density: crate::material::PARTED_DENSITY,
         })
     }
 
