@@ -103,6 +103,8 @@ impl Moment<'_> {
             Source::Particles => self.statistics.particles as f64,
             Source::KineticEnergy => self.statistics.kinetic_energy,
             Source::ShareDilute => self.statistics.share_dilute,
+            Source::ShareIllPosed => self.statistics.share_ill_posed,
+            Source::CreepRate => self.statistics.creep_rate,
         }
     }
 

@@ -59,6 +59,10 @@ pub struct Statistics {
     pub max_speed: f64,
     /// Share of mass with I > 0.3 [1]: outside the dense regime.
     pub share_dilute: f64,
+    /// Share of mass that yields where its friction law is ill-posed [1].
+    pub share_ill_posed: f64,
+    /// Root mean square, by mass, of the shear rate of material below its static strength [1/s].
+    pub creep_rate: f64,
 }
 
 /// A copy of the particles in single precision, for logs and pictures (planar scenes: z = 0).

@@ -12,9 +12,6 @@ use crate::scene::{self, Dimension, Scene};
 use crate::solver::{Solver, StepInputs, three};
 use crate::state::{CellGrid, State};
 
-/// Share of mass with I above this is outside the dense regime ([A] section 2).
-const DENSE_LIMIT: f64 = 0.3;
-
 /// What is saved: the state, and what sections have counted.
 #[derive(Serialize, Deserialize)]
 struct Saved<const D: usize> {
@@ -247,21 +244,15 @@ impl<const D: usize> Engine for Simulation<D> {
 
     fn statistics(&self) -> Statistics {
         let grains = &self.state.grains;
-        let (mut energy, mut fastest, mut mass, mut dilute) = (0.0, 0.0f64, 0.0, 0.0);
+        let (mut energy, mut fastest) = (0.0, 0.0f64);
         let mut particles = 0;
         for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
             let v2 = dot(&grains.velocity[i], &grains.velocity[i]);
             particles += 1;
             energy += 0.5 * grains.mass[i] * v2;
             fastest = fastest.max(v2.sqrt());
-            // Sand without pressure is not dense whatever its I, but it carries no stress either: it counts as mass only.
-            if self.solver.pressure()[i] > 0.0 {
-                mass += grains.mass[i];
-                if self.solver.inertial_number()[i] > DENSE_LIMIT {
-                    dilute += grains.mass[i];
-                }
-            }
         }
+        let validity = self.solver.validity(&self.state);
         Statistics {
             communication_steps: 0,
             steps: self.state.steps,
@@ -270,7 +261,9 @@ impl<const D: usize> Engine for Simulation<D> {
             step_size: self.state.step_size,
             kinetic_energy: energy,
             max_speed: fastest,
-            share_dilute: if mass > 0.0 { dilute / mass } else { 0.0 },
+            share_dilute: validity.share_dilute,
+            share_ill_posed: validity.share_ill_posed,
+            creep_rate: validity.creep_rate,
         }
     }
 

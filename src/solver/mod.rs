@@ -17,12 +17,14 @@ mod numerics;
 mod pair;
 mod pressure;
 mod timestep;
+mod validity;
 mod viscous;
 
 pub use devices::{Sink, Source};
 pub use error::SolverError;
 pub use grid::Periodic;
 pub use numerics::{Numerics, Scheme};
+pub use validity::Validity;
 
 use std::sync::Arc;
 

@@ -6,6 +6,7 @@
 mod collapse;
 mod conservation;
 mod incline;
+mod rheology;
 mod silo;
 
 use sandgate::component::{Component, ValueReference};

@@ -289,7 +289,7 @@ fn every_case_meets_the_schema_and_wrong_ones_do_not() {
         for (from, to) in [
             ("spacing = ", "spacign = "),
             ("dimension = ", "dimension = 1"),
-            ("law = \"mu_i\"", "law = \"mu\""),
+            ("law = \"", "law = \"no_"),
             ("[run]", "[run]\nuntill = 3"),
             ("name = ", "nome = "),
             ("[log]", "[log]\nrequired = \"yes\""),

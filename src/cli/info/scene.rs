@@ -1,6 +1,7 @@
 //! What a scene holds and what it leaves out, for people.
 
 use crate::component::Component;
+use crate::material::{Law, Material, MuI};
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
 use crate::shape::Shape;
 
@@ -28,10 +29,56 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
             scene.materials[body.material].name,
         ));
     }
+    for named in &scene.materials {
+        let about = material(&named.material);
+        text.push_str(&format!("  material {}: {about}\n", named.name));
+    }
     for line in parts(scene) {
         text.push_str(&format!("  {line}\n"));
     }
     text.push_str(&format!("left out   {}\n", left_out(scene).join("; ")));
+    text
+}
+
+/// The law of a material and what is added to it.
+fn material(material: &Material) -> String {
+    let grains = &material.grains;
+    let mu_i = |law: &MuI| {
+        let growth = if law.mu_inf > 0.0 {
+            format!(", mu_inf {}", law.mu_inf)
+        } else {
+            String::new()
+        };
+        format!(
+            "mu_s {:.4} to mu_2 {:.4}, I0 {:.4}{growth}; grains of {} m and {} kg/m^3, volume fraction {} to {}",
+            law.mu_s,
+            law.mu_2,
+            law.inertial_number_scale,
+            grains.diameter,
+            grains.density,
+            grains.phi_max,
+            grains.phi_min,
+        )
+    };
+    let mut text = match &material.law {
+        Law::MuI(law) => format!("mu(I), {}", mu_i(law)),
+        Law::BarkerGray(law) => format!(
+            "Barker-Gray mu(I), {}; joined at I = {:.5}",
+            mu_i(law.high()),
+            law.joint()
+        ),
+        Law::ConstantFriction(law) => format!(
+            "constant friction, mu {:.4}; {:.6} kg/m^3",
+            law.mu,
+            material.rest_density()
+        ),
+    };
+    if material.cohesion > 0.0 {
+        text.push_str(&format!("; cohesion {:.4} Pa", material.cohesion));
+    }
+    if material.bulk_friction > 0.0 {
+        text.push_str(&format!("; bulk friction {}", material.bulk_friction));
+    }
     text
 }
 
@@ -109,6 +156,17 @@ fn left_out(scene: &Scene) -> Vec<&'static str> {
     let unused = [
         (scene.dimension == Dimension::Two, "the third dimension"),
         (scene.materials.len() < 2, "further phases (one material)"),
+        (
+            scene.materials.iter().all(|m| m.material.cohesion == 0.0),
+            "cohesion",
+        ),
+        (
+            scene
+                .materials
+                .iter()
+                .all(|m| m.material.bulk_friction == 0.0),
+            "bulk friction",
+        ),
         (domain.periodic == [false; 3], "periodic sides"),
         (scene.gates.is_empty(), "gates"),
         (scene.inflows.is_empty(), "inflows"),

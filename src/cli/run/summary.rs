@@ -51,6 +51,8 @@ pub(super) fn json(
         "kinetic_energy": number(figures.kinetic_energy),
         "max_speed": number(figures.max_speed),
         "share_dilute": number(figures.share_dilute),
+        "share_ill_posed": number(figures.share_ill_posed),
+        "creep_rate": number(figures.creep_rate),
         "mass": {
             "initial": number(ledger.initial),
             "inflow": number(ledger.inflow),

@@ -39,6 +39,8 @@ pub(in crate::component) enum Source {
     Particles,
     KineticEnergy,
     ShareDilute,
+    ShareIllPosed,
+    CreepRate,
 }
 
 /// A row before it has its number.
@@ -375,6 +377,19 @@ fn totals() -> impl Iterator<Item = Row> {
             "share of the mass with an inertial number above 0.3: outside the dense regime that the model is for",
         )
         .display(PERCENT),
+        Row::output(
+            "validity.share_ill_posed",
+            "1",
+            Source::ShareIllPosed,
+            "share of the mass that yields where its friction law is ill-posed: short waves grow there, the finer the faster",
+        )
+        .display(PERCENT),
+        Row::output(
+            "validity.creep_rate",
+            "1/s",
+            Source::CreepRate,
+            "root mean square, by mass, of the shear rate of material below its static strength: 0 if all that should rest does",
+        ),
     ]
     .into_iter()
 }

@@ -1,9 +1,35 @@
-//! Materials. To add a law: a table in `raw/sections.rs`, a line in its `RawMaterial`, a function here.
+//! Materials. To add a law: a table in `raw/sections.rs`, a line in its `RawMaterial`, a function here or in `friction`.
 
 use super::Lift;
-use crate::material::{Grains, Law, Material, MuI};
-use crate::scene::raw::{At, Place, Preset, RawMaterial, RawMuI};
+use super::friction::{FrictionKeys, friction_keys};
+use crate::material::{
+    AngleMatch, BarkerGray, ConstantFriction, Grains, Law, Material, SAND_LAYER_FACTOR,
+};
+use crate::scene::raw::{
+    AngleMatchWord, At, Length, Place, Preset, Pressure, Ratio, RawBarkerGray, RawConstantFriction,
+    RawMaterial, RawMuI,
+};
 use crate::scene::types::NamedMaterial;
+
+/// Packing of a material whose grains a scene does not state: only says at which density it parts, phi_min/phi_max.
+const PHI: (f64, f64) = (0.5, 0.6);
+
+/// The keys that all materials have.
+struct CommonKeys<'a> {
+    cohesion: &'a Option<At<Pressure>>,
+    bulk_friction: &'a Option<At<Ratio>>,
+    parted_density: &'a Option<At<Ratio>>,
+}
+
+macro_rules! common_keys {
+    ($raw:ident) => {
+        CommonKeys {
+            cohesion: &$raw.cohesion,
+            bulk_friction: &$raw.bulk_friction,
+            parted_density: &$raw.parted_density,
+        }
+    };
+}
 
 impl Lift<'_> {
     /// One for each `[materials.NAME]`, in order; `None` where a problem was reported.
@@ -13,6 +39,10 @@ impl Lift<'_> {
         for entry in entries.into_iter().flatten() {
             let material = match &entry.value {
                 Some(RawMaterial::MuI(raw)) => self.mu_i(&entry.place, raw),
+                Some(RawMaterial::BarkerGray(raw)) => self.barker_gray(&entry.place, raw),
+                Some(RawMaterial::ConstantFriction(raw)) => {
+                    self.constant_friction(&entry.place, raw)
+                }
                 None => None,
             };
             lifted.push(material.map(|material| NamedMaterial {
@@ -32,122 +62,94 @@ impl Lift<'_> {
     }
 
     fn mu_i(&mut self, table: &Place, raw: &RawMuI) -> Option<Material> {
-        let preset = raw.preset.as_ref().map(|p| match p.value {
-            Preset::GlassBeads => Material::glass_beads(),
-            Preset::Sand08 => Material::sand_08(),
-            Preset::Sand04 => Material::sand_04(),
-        });
-        let mut value = |key: &'static str, given: Option<f64>, from: Option<f64>| {
-            let value = given.or(from);
-            // A parameter or preset that is there but could not be read has been reported.
-            let reported = raw.given.contains(&key) || raw.given.contains(&"preset");
-            if value.is_none() && !reported {
-                self.report_missing_parameter(table, key);
-            }
-            value
+        let keys = friction_keys!(raw);
+        let (law, grains) = self.friction(table, &keys)?;
+        let law = match &raw.layer_depth {
+            Some(depth) => law.of_layer(self.layer_shift(depth, raw, &keys, &grains)?),
+            None => law,
         };
-        let p = preset.as_ref().map(|p| &p.grains);
-        let law = preset.as_ref().map(|p| match p.law {
-            Law::MuI(law) => law,
-            _ => MuI::sand_04(),
-        });
-        let tan = |a: &At<crate::scene::raw::Angle>| a.value.0.tan();
-        let mu_s = value(
-            "static_friction_angle",
-            raw.static_friction_angle.as_ref().map(tan),
-            law.map(|law| law.mu_s),
-        );
-        let mu_2 = value(
-            "dynamic_friction_angle",
-            raw.dynamic_friction_angle.as_ref().map(tan),
-            law.map(|law| law.mu_2),
-        );
-        let inertial_number_scale = value(
-            "inertial_number_scale",
-            raw.inertial_number_scale.as_ref().map(|v| v.value.0),
-            law.map(|law| law.inertial_number_scale),
-        );
-        let grain_diameter = value(
-            "grain_diameter",
-            raw.grain_diameter.as_ref().map(|v| v.value.0),
-            p.map(|p| p.diameter),
-        );
-        let grain_density = value(
-            "grain_density",
-            raw.grain_density.as_ref().map(|v| v.value.0),
-            p.map(|p| p.density),
-        );
-        // Without a preset: the dense regime of [A], section 2.
-        let phi_max = raw.phi_max.as_ref().map(|v| v.value.0);
-        let phi_min = raw.phi_min.as_ref().map(|v| v.value.0);
-        let law = MuI {
-            mu_s: mu_s?,
-            mu_2: mu_2?,
-            inertial_number_scale: inertial_number_scale?,
-            mu_inf: 0.0,
+        self.material(grains, Law::MuI(law), &common_keys!(raw))
+    }
+
+    /// s = factor d/H of (A.18).
+    fn layer_shift(
+        &mut self,
+        depth: &At<Length>,
+        raw: &RawMuI,
+        keys: &FrictionKeys<'_>,
+        grains: &Grains,
+    ) -> Option<f64> {
+        let beads = keys.preset_is(Preset::GlassBeads);
+        if raw.layer_factor.is_none() && beads {
+            self.problems.report(
+                &depth.place,
+                "a layer depth for glass beads",
+                "a layer depth for sand: measured glass beads need no correction (gamma = 0)",
+                "leave layer_depth out, or give a layer_factor",
+            );
+            return None;
+        }
+        let factor = raw.layer_factor.as_ref();
+        let factor = factor.map_or(SAND_LAYER_FACTOR, |at| at.value.0);
+        Some(factor * grains.diameter / depth.value.0)
+    }
+
+    fn barker_gray(&mut self, table: &Place, raw: &RawBarkerGray) -> Option<Material> {
+        let (law, grains) = self.friction(table, &friction_keys!(raw))?;
+        let Some(made) = BarkerGray::new(law) else {
+            self.problems.report(
+                table,
+                format!(
+                    "mu_s {:.4}, mu_2 {:.4} and I0 {}: ill-posed at every inertial number",
+                    law.mu_s, law.mu_2, law.inertial_number_scale
+                ),
+                "a mu(I) with a well-posed range to join at",
+                "raise dynamic_friction_angle, or use law = \"mu_i\"",
+            );
+            return None;
         };
+        self.material(grains, Law::BarkerGray(made), &common_keys!(raw))
+    }
+
+    fn constant_friction(&mut self, _: &Place, raw: &RawConstantFriction) -> Option<Material> {
+        let angle = raw.friction_angle.as_ref()?.value.0;
+        let kind = match raw.r#match.as_ref()?.value {
+            AngleMatchWord::PlaneStrain => AngleMatch::PlaneStrain,
+            AngleMatchWord::SimpleShear => AngleMatch::SimpleShear,
+        };
+        let (phi_min, phi_max) = PHI;
         let grains = Grains {
-            diameter: grain_diameter?,
-            density: grain_density?,
-            phi_max: phi_max.or(p.map(|p| p.phi_max)).unwrap_or(0.6),
-            phi_min: phi_min.or(p.map(|p| p.phi_min)).unwrap_or(0.5),
+            diameter: 0.0,
+            density: raw.density.as_ref()?.value.0 / phi_max,
+            phi_max,
+            phi_min,
         };
-        let angles = self.check_friction_order(table, raw, &law);
-        let fractions = self.check_fraction_order(table, raw, &grains);
-        (angles && fractions).then_some(Material {
-            grains,
-            law: Law::MuI(law),
-            cohesion: 0.0,
-            bulk_friction: 0.0,
-            parted_density: crate::material::PARTED_DENSITY,
+        let law = Law::ConstantFriction(ConstantFriction::of_angle(angle, kind));
+        let material = self.material(grains, law, &common_keys!(raw))?;
+        Some(Material {
+            cohesion: ConstantFriction::cohesion_of(material.cohesion, angle, kind),
+            ..material
         })
     }
 
-    fn report_missing_parameter(&mut self, table: &Place, key: &str) {
-        self.problems.report(
-            &table.child(key),
-            "nothing, and no preset",
-            "every parameter, or a preset to take the others from",
-            format!("add {key}, or preset = \"glass_beads\""),
-        );
-    }
-
-    /// Friction grows with the shear rate.
-    fn check_friction_order(&mut self, table: &Place, raw: &RawMuI, material: &MuI) -> bool {
-        let good = material.mu_2 >= material.mu_s;
-        if !good {
-            let degrees = |mu: f64| format!("{:.4} deg", mu.atan().to_degrees());
-            let both = [&raw.dynamic_friction_angle, &raw.static_friction_angle];
-            let place = both.into_iter().flatten().next().map(|at| &at.place);
+    fn material(&mut self, grains: Grains, law: Law, keys: &CommonKeys<'_>) -> Option<Material> {
+        let parted = keys.parted_density.as_ref()?;
+        let touching = grains.phi_min / grains.phi_max;
+        if parted.value.0 >= touching {
             self.problems.report(
-                place.unwrap_or(table),
-                format!(
-                    "static_friction_angle {} above dynamic_friction_angle {}",
-                    degrees(material.mu_s),
-                    degrees(material.mu_2)
-                ),
-                "a static angle not above the dynamic one",
-                "set both angles",
+                &parted.place,
+                format!("parted_density {}", parted.value.0),
+                format!("below {touching:.4}, where grains touch (phi_min over phi_max)"),
+                "lower it, for example to 0.5",
             );
+            return None;
         }
-        good
-    }
-
-    /// Flowing material is looser.
-    fn check_fraction_order(&mut self, table: &Place, raw: &RawMuI, material: &Grains) -> bool {
-        let good = material.phi_min < material.phi_max;
-        if !good {
-            let place = [&raw.phi_min, &raw.phi_max].into_iter().flatten().next();
-            self.problems.report(
-                place.map_or(table, |at| &at.place),
-                format!(
-                    "phi_min {} and phi_max {}",
-                    material.phi_min, material.phi_max
-                ),
-                "phi_min below phi_max",
-                "set both, for example phi_min = 0.5 and phi_max = 0.6",
-            );
-        }
-        good
+        Some(Material {
+            grains,
+            law,
+            cohesion: keys.cohesion.as_ref()?.value.0,
+            bulk_friction: keys.bulk_friction.as_ref()?.value.0,
+            parted_density: parted.value.0,
+        })
     }
 }

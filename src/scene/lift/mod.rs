@@ -7,6 +7,7 @@ mod bodies;
 mod clearance;
 mod devices;
 mod domain;
+mod friction;
 mod gauges;
 mod geometry;
 mod material;

@@ -13,9 +13,9 @@ mod values;
 pub(super) use groups::{Coordinates, Entry, Gravity, List, Named, SeriesPoint};
 pub(super) use read::{At, Place, Problems, nearest, read_document, syntax_place};
 pub(super) use sections::*;
-pub(super) use values::{Angle, Length, Ratio, Text};
+pub(super) use values::{Angle, Density, Length, Pressure, Ratio, Text};
 
 use declare::{choice, table, tagged};
 use range::Range;
 use read::{Field, KeySpec, Need, Node, refuse_unknown};
-use values::{Density, Flag, MassRate, Name, Speed, Time, Whole, choose, read_word};
+use values::{Flag, MassRate, Name, Speed, Time, Whole, choose, read_word};

@@ -120,6 +120,8 @@ tagged! {
     /// A material: a law and its parameters.
     RawMaterial by law {
         "mu_i" => MuI(RawMuI),
+        "barker_gray" => BarkerGray(RawBarkerGray),
+        "constant_friction" => ConstantFriction(RawConstantFriction),
     }
 }
 
@@ -134,14 +136,85 @@ table! {
         optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
         /// Inertial number I0 at which friction is half way between the two.
         optional inertial_number_scale: Ratio, in Range::above(0.0);
+        /// Growth of friction at large I: mu_inf I^2/(I0 + I) is added; 0 is none, 0.05 a published value.
+        optional high_inertia_friction: Ratio, in Range::within(0.0, 1.0), default 0;
+        /// Depth H of a thin layer of sand: I + layer_factor x grain_diameter/H stands in place of I. Left out: no correction.
+        optional layer_depth: Length, in Range::above(0.0);
+        /// Factor of the layer correction (2.61, that of sand, if left out; glass beads have none).
+        optional layer_factor: Ratio, in Range::above(0.0);
         /// Grain diameter.
         optional grain_diameter: Length, in Range::above(0.0);
         /// Density of the grains' own material.
         optional grain_density: Density, in Range::above(0.0);
         /// Largest volume fraction of grains (0.6 if left out).
         optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
-        /// Smallest volume fraction of grains in dense flow, below phi_max (0.5 if left out).
+        /// Smallest volume fraction of grains that touch, below phi_max (0.5 if left out). Looser material has parted: it carries no stress until it is this dense again.
         optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
+        /// Shear strength without pressure, added to friction. It is no tensile strength: material that is pulled parts.
+        optional cohesion: Pressure, in Range::from(0.0), default 0;
+        /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
+        optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
+        /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
+        optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
+    }
+}
+
+table! {
+    /// Friction mu(I) as Barker and Gray made it well-posed at low I: no yield stress, so that piles creep. Starts from
+    /// the values of mu(I).
+    RawBarkerGray {
+        /// Values to start from.
+        optional preset: Preset;
+        /// Friction angle at vanishing shear rate; tan of it is mu_s.
+        optional static_friction_angle: Angle, in Range::above_to(0.0, 1.25);
+        /// Friction angle at large shear rate, not below the static one; tan of it is mu_2.
+        optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
+        /// Inertial number I0 at which friction is half way between the two.
+        optional inertial_number_scale: Ratio, in Range::above(0.0);
+        /// Growth of friction at large I: mu_inf I^2/(I0 + I) is added.
+        optional high_inertia_friction: Ratio, in Range::within(0.0, 1.0), default 0.05;
+        /// Grain diameter.
+        optional grain_diameter: Length, in Range::above(0.0);
+        /// Density of the grains' own material.
+        optional grain_density: Density, in Range::above(0.0);
+        /// Largest volume fraction of grains (0.6 if left out).
+        optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
+        /// Smallest volume fraction of grains that touch, below phi_max (0.5 if left out). Looser material has parted: it carries no stress until it is this dense again.
+        optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
+        /// Shear strength without pressure, added to friction. It is no tensile strength: material that is pulled parts.
+        optional cohesion: Pressure, in Range::from(0.0), default 0;
+        /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
+        optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
+        /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
+        optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
+    }
+}
+
+table! {
+    /// Constant friction (Mohr-Coulomb, Drucker-Prager) at constant volume: no rate dependence, no dilatancy.
+    RawConstantFriction {
+        /// Mohr-Coulomb friction angle.
+        required friction_angle: Angle, in Range::within(0.0, 1.25);
+        /// How the angle becomes a friction coefficient.
+        optional r#match: AngleMatchWord, default "plane_strain";
+        /// Density of the material at rest, pores included.
+        required density: Density, in Range::above(0.0);
+        /// Mohr-Coulomb cohesion c. It is no tensile strength: material that is pulled parts.
+        optional cohesion: Pressure, in Range::from(0.0), default 0;
+        /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
+        optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
+        /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
+        optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
+    }
+}
+
+choice! {
+    /// Friction coefficient of an angle phi.
+    AngleMatchWord {
+        /// tau = c cos phi + p sin phi: Mohr-Coulomb's line in plane strain at constant volume
+        "plane_strain" => PlaneStrain,
+        /// tau = c + p tan phi: a layer that slips along its bed; phi is the angle of repose
+        "simple_shear" => SimpleShear,
     }
 }
 

@@ -92,6 +92,8 @@ scalars! {
     MassRate => Quantity::MassRate;
     /// A density [kg/m^3].
     Density => Quantity::Density;
+    /// A pressure or stress [Pa].
+    Pressure => Quantity::Pressure;
     /// A number \[1\].
     Ratio => Quantity::Ratio;
 }

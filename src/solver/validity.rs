@@ -1,0 +1,63 @@
+//! How far a flow is from what its model holds for: shares of mass and the creep of what should rest. Computed when
+//! somebody asks, once a communication step.
+
+use crate::material::{Material, Rheology, ill_posedness};
+use crate::state::State;
+
+use super::Solver;
+
+/// Material with I above this is outside the dense regime ([A] section 2).
+const DENSE_LIMIT: f64 = 0.3;
+
+/// Rounding of viscosity times shear rate.
+const ROUNDING: f64 = 1e-9;
+
+/// Figures over the loaded mass, p > 0: material without pressure carries no stress, whatever its I. 0 without load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Validity {
+    /// Share with I > 0.3 [1].
+    pub share_dilute: f64,
+    /// Share that yields where the friction law is ill-posed, C > 0 [1] (docs/theory.md, M6).
+    pub share_ill_posed: f64,
+    /// Root mean square, by mass, of the shear rate of material whose shear stress is below its static strength [1/s]:
+    /// 0 if all that should rest does.
+    pub creep_rate: f64,
+}
+
+impl<const D: usize> Solver<D> {
+    /// The figures of a state that this solver has just stepped, started or resumed.
+    #[must_use]
+    pub fn validity(&self, state: &State<D>) -> Validity {
+        let grains = &state.grains;
+        let (mut loaded, mut dilute, mut ill_posed) = (0.0, 0.0, 0.0);
+        let (mut below, mut creep) = (0.0, 0.0);
+        for i in (0..grains.len()).filter(|&i| !grains.drained[i] && self.pressure[i] > 0.0) {
+            let m = grains.mass[i];
+            let material = &self.materials[grains.phase[i] as usize];
+            loaded += m;
+            if self.inertial_number[i] > DENSE_LIMIT {
+                dilute += m;
+            }
+            let shear = self.kinematics[i].shear;
+            let stress = (1.0 + ROUNDING) * self.viscosity[i] * shear;
+            if self.is_ill_posed(material, i, stress) {
+                ill_posed += m;
+            }
+            if stress < material.strength(self.pressure[i]) {
+                below += m;
+                creep += m * shear * shear;
+            }
+        }
+        let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+        Validity {
+            share_dilute: over(dilute, loaded),
+            share_ill_posed: over(ill_posed, loaded),
+            creep_rate: over(creep, below).sqrt(),
+        }
+    }
+
+    fn is_ill_posed(&self, material: &Material, i: usize, stress: f64) -> bool {
+        stress >= material.yield_stress(self.pressure[i])
+            && ill_posedness(&material.law, self.inertial_number[i]) > 0.0
+    }
+}
