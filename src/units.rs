@@ -23,6 +23,8 @@ pub enum Quantity {
     Density,
     /// Pressure or stress [Pa].
     Pressure,
+    /// Compressibility [1/Pa].
+    Compressibility,
     /// A number without dimension \[1\].
     Ratio,
 }
@@ -87,11 +89,17 @@ const PRESSURE: &[Unit] = &[
     unit("MPa", 1e6, 1.0),
     unit("bar", 1e5, 1.0),
 ];
+const COMPRESSIBILITY: &[Unit] = &[
+    unit("Pa^-1", 1.0, 1.0),
+    unit("kPa^-1", 1.0, 1e3),
+    unit("MPa^-1", 1.0, 1e6),
+    unit("bar^-1", 1.0, 1e5),
+];
 const RATIO: &[Unit] = &[unit("1", 1.0, 1.0), unit("%", 1.0, 1e2)];
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Quantity; 9] = [
+    pub const ALL: [Quantity; 10] = [
         Quantity::Length,
         Quantity::Time,
         Quantity::Angle,
@@ -100,6 +108,7 @@ impl Quantity {
         Quantity::MassRate,
         Quantity::Density,
         Quantity::Pressure,
+        Quantity::Compressibility,
         Quantity::Ratio,
     ];
 
@@ -113,6 +122,7 @@ impl Quantity {
             Quantity::MassRate => MASS_RATE,
             Quantity::Density => DENSITY,
             Quantity::Pressure => PRESSURE,
+            Quantity::Compressibility => COMPRESSIBILITY,
             Quantity::Ratio => RATIO,
         }
     }
@@ -129,6 +139,7 @@ impl Quantity {
             Quantity::MassRate => "mass rate",
             Quantity::Density => "density",
             Quantity::Pressure => "pressure",
+            Quantity::Compressibility => "compressibility",
             Quantity::Ratio => "ratio",
         }
     }
@@ -156,6 +167,7 @@ impl Quantity {
             Quantity::MassRate => "0.5 kg/s",
             Quantity::Density => "2600 kg/m^3",
             Quantity::Pressure => "20 kPa",
+            Quantity::Compressibility => "4e-5 Pa^-1",
             Quantity::Ratio => "40 %",
         }
     }
@@ -310,6 +322,7 @@ mod tests {
             ("3.6 t/h", Quantity::MassRate, 1.0),
             ("2.6 g/cm^3", Quantity::Density, 2600.0),
             ("20 kPa", Quantity::Pressure, 20_000.0),
+            ("4.1e-5 Pa^-1", Quantity::Compressibility, 4.1e-5),
             ("40 %", Quantity::Ratio, 0.4),
         ];
         for (text, quantity, si) in cases {

@@ -3,6 +3,7 @@
 //!
 //! Add a law: a file with its parameters, equations, `impl Friction` and tests, and one line in [`Law`].
 
+mod bagnold;
 mod barker_gray;
 mod bulk_friction;
 mod constant_friction;
@@ -14,6 +15,7 @@ mod mu_i;
 mod regularised;
 mod well_posed;
 
+pub use bagnold::Bagnold;
 pub use barker_gray::BarkerGray;
 pub use bulk_friction::bulk_pressure;
 pub use constant_friction::{AngleMatch, ConstantFriction};

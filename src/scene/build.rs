@@ -3,9 +3,11 @@
 use crate::boundary::{GroupSpec, Plate, WallPoints, box_points, plane_points, polyline_points};
 use crate::math::{Geometry, Vector, add, dot, norm, scale};
 use crate::shape::lattice;
-use crate::solver::{Periodic, Plan, Sink, Source};
+use crate::solver::{Periodic, Plan, Scheme, Sink, Source};
 use crate::state::{GateState, Grains, InflowState, Random, State};
 
+use super::ghosts::ghost_depth;
+use super::steady_flow::steady_flow;
 use super::{Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, WallGeometry};
 
 /// The first D components of a point.
@@ -31,6 +33,10 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
             upper: narrow(&o.upper),
         })
         .collect();
+    let ghost_depth = match scene.numerics.scheme {
+        Scheme::PaperA(_) => ghost_depth(scene, &walls),
+        Scheme::Implicit => Vec::new(),
+    };
     let state = state::<D>(scene)?;
     let plan = Plan {
         numerics: scene.numerics.clone(),
@@ -41,6 +47,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         periodic,
         materials: scene.materials.iter().map(|m| m.material.clone()).collect(),
         walls,
+        ghost_depth,
         plates,
         sources,
         sinks,
@@ -101,20 +108,27 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
             scene.numerics.spacing,
             D,
         );
-        let mass = exact_mass(material.rest_density() * lattice.cell_volume * scene.domain.width);
+        let flow = steady_flow(scene, body);
+        let bulk = flow
+            .as_ref()
+            .map_or(material.rest_density(), |f| f.loose_density);
+        let mass = exact_mass(bulk * lattice.cell_volume * scene.domain.width);
         for place in &lattice.points {
             let position: Vector<D> =
                 std::array::from_fn(|k| place[k] + jitter * random.symmetric());
-            let density =
+            let mut velocity: Vector<D> = narrow(&body.velocity);
+            let mut density =
                 material.density_under(load_above(scene, place, up), scene.numerics.sound_speed);
-            grains.push(
-                id,
-                body.material as u8,
-                position,
-                narrow(&body.velocity),
-                mass,
-                density,
-            );
+            let mut shear_rate = 0.0;
+            if let Some(flow) = &flow {
+                let here = flow.at(&crate::solver::three(&position), scene.numerics.sound_speed);
+                velocity = add(&velocity, &narrow(&here.velocity));
+                (density, shear_rate) = (here.density, here.shear_rate);
+            }
+            grains.push(id, body.material as u8, position, velocity, mass, density);
+            if let Some(relaxed) = grains.relaxed_shear.last_mut() {
+                *relaxed = shear_rate;
+            }
             id += 1;
         }
     }

@@ -6,9 +6,11 @@
 
 mod build;
 mod error;
+mod ghosts;
 mod lift;
 mod raw;
 mod reference;
+mod steady_flow;
 mod types;
 
 pub use build::{build, geometry, narrow};

@@ -93,6 +93,17 @@ pub struct Body {
     pub level: Option<f64>,
     /// Initial velocity [m/s].
     pub velocity: Point,
+    /// What is added to it, over the body's height.
+    pub profile: VelocityProfile,
+}
+
+/// Velocity over the height of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VelocityProfile {
+    /// The same everywhere.
+    Uniform,
+    /// Steady flow of a layer down a slope, along gravity's part in the bed ([A] eq. 56); a box on its bed.
+    Bagnold,
 }
 
 /// What a wall does to material that slides along it.

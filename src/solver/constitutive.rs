@@ -1,10 +1,9 @@
 //! Per particle: density, relaxed strain rate, pressure from the equation of state, viscosity from the rheology
 //! (docs/theory.md, E5 and E6). No neighbours here.
 
-use crate::material::{Friction, Grains, Material, Rheology, bulk_pressure, grain_compression};
+use crate::material::{Grains, Material, Rheology, bulk_pressure, grain_compression};
 use crate::state::State;
 
-use super::numerics::Scheme;
 use super::{Solver, SolverError};
 
 /// Shear rates below this count as none [1/s]: far below any that matters, far above rounding.
@@ -83,14 +82,11 @@ impl<const D: usize> Solver<D> {
             }
             self.viscosity[i] = response.viscosity;
             self.inertial_number[i] = response.inertial_number;
-            self.pair_viscosity[i] = match self.numerics.scheme {
-                Scheme::Implicit => response.viscosity * k.pair_scale,
-                Scheme::Explicit => response.viscosity,
-            };
+            self.pair_viscosity[i] = response.viscosity * k.pair_scale;
         }
     }
 
-    /// [A] eqs. 6, 7, 41, 43, 44 with the cap (or [A]'s regularisation in the explicit scheme).
+    /// [A] eqs. 6, 7, 41, 43, 44 with the cap.
     fn granular(
         &self,
         m: &Material,
@@ -103,51 +99,28 @@ impl<const D: usize> Solver<D> {
         let rest = m.rest_density();
         let compressibility = 1.0 / (rest * c0 * c0);
         let b = m.grains.dilatancy_factor(compressibility) * relaxed * relaxed;
-        let loosest = m.grains.phi_min / m.grains.phi_max;
-        // Rods of a planar scene are compressed across alone, grains in space and in rings all round.
-        let (x, factor) = if D == 3 || self.geometry.is_axisymmetric() {
-            let x = grain_compression::<3>(rho / rest, b, loosest);
-            (x, Grains::compressed_time_factor::<3>(x))
-        } else {
-            (grain_compression::<2>(rho / rest, b, loosest), 1.0)
-        };
+        let x = grain_compression::<D>(rho / rest, b, m.grains.phi_min / m.grains.phi_max);
         let pressure = (x - 1.0) / compressibility;
         // Parted material carries nothing; dense material without pressure still has its cohesion.
         if pressure <= 0.0 && (m.cohesion == 0.0 || !m.is_dense(rho)) {
             return Response::default();
         }
-        let correction = correction * factor;
+        let correction = correction * Grains::compressed_time_factor::<D>(x);
         let inertial_number = if pressure > 0.0 {
             correction * shear * m.grains.inertial_time(pressure)
         } else {
             0.0
         };
-        let viscosity = match self.numerics.scheme {
-            Scheme::Implicit => {
-                let cap = self.numerics.cap_time * m.strength(pressure);
-                if shear > STILL {
-                    (m.shear_stress(shear, pressure, correction) / shear).min(cap)
-                } else {
-                    cap
-                }
-            }
-            Scheme::Explicit => m.regularised_viscosity(
-                shear,
-                pressure,
-                self.numerics.cap_time,
-                m.law.static_friction() * self.reference_pressure(m),
-            ),
+        let cap = self.numerics.cap_time * m.strength(pressure);
+        let viscosity = if shear > STILL {
+            (m.shear_stress(shear, pressure, correction) / shear).min(cap)
+        } else {
+            cap
         };
         Response {
             pressure,
             viscosity,
             inertial_number,
         }
-    }
-
-    /// tau_0/mu_s of [A]'s regularisation: the load of the deepest material, c0^2 rho/100 by the choice of c0 [Pa].
-    fn reference_pressure(&self, m: &Material) -> f64 {
-        let c0 = self.numerics.sound_speed;
-        m.rest_density() * c0 * c0 / 100.0
     }
 }

@@ -137,7 +137,6 @@ impl<const D: usize> Solver<D> {
         let tau = self.last_stress(state);
         let share = self.numerics.pair_viscosity_share;
         let support = self.kernel.support();
-        let viscous = self.numerics.scheme == super::Scheme::Implicit;
         let dissipation = 2.0 * (D as f64 + 2.0);
         for (b, block) in self.lists.blocks.iter().enumerate() {
             for row in 0..block.rows() {
@@ -163,16 +162,11 @@ impl<const D: usize> Solver<D> {
                         projection.map_or(a, |n| scale(dot(&n, &a), &n))
                     };
                     let mut force = scale(-2.0 * self.normal_pressure()[i], &g);
-                    let factor = if viscous {
-                        force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau[i], &g))));
-                        share
-                    } else {
-                        1.0
-                    };
+                    force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau[i], &g))));
                     let pg = seen(g);
                     let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];
                     let drag =
-                        -2.0 * factor * c * dot(&pg, &sub(vi, &self.walls.velocity[w as usize]));
+                        -2.0 * share * c * dot(&pg, &sub(vi, &self.walls.velocity[w as usize]));
                     force = add(&force, &scale(drag, &pg));
                     for k in 0..D {
                         state.impulse[group][k] -= dt * self.width * volume * force[k];

@@ -15,6 +15,7 @@ mod kinematics;
 mod lists;
 mod numerics;
 mod pair;
+mod paper_a;
 mod pressure;
 mod timestep;
 mod validity;
@@ -24,6 +25,7 @@ pub use devices::{Sink, Source};
 pub use error::SolverError;
 pub use grid::Periodic;
 pub use numerics::{Numerics, Scheme};
+pub use paper_a::PaperA;
 pub use validity::Validity;
 
 use std::sync::Arc;
@@ -49,7 +51,7 @@ pub enum StepBound {
     Acoustic,
     /// Relative motion of neighbours or walls.
     Motion,
-    /// Explicit viscosity.
+    /// Explicit viscosity (scheme `paper_a`).
     Viscous,
     /// The end of the communication step.
     Communication,
@@ -87,6 +89,8 @@ pub struct Plan<const D: usize> {
     pub materials: Vec<Material>,
     /// Points of the fixed walls; groups hold walls, then gates.
     pub walls: WallPoints<D>,
+    /// Distance of each of these points behind its wall's surface [m]; only scheme `paper_a` needs it, else empty.
+    pub ghost_depth: Vec<f64>,
     /// Gates.
     pub plates: Vec<Plate<D>>,
     /// Inflows.
@@ -133,6 +137,7 @@ pub struct Solver<const D: usize> {
     materials: Vec<Material>,
     kernel: WendlandC2<D>,
     walls: WallPoints<D>,
+    ghost_depth: Vec<f64>,
     /// Number of wall groups before the gates'.
     fixed_groups: usize,
     plates: Vec<Plate<D>>,
@@ -150,6 +155,7 @@ pub struct Solver<const D: usize> {
     inertial_number: Vec<f64>,
     prediction: Vec<Prediction<D>>,
     viscous: Viscous<D>,
+    paper_a: paper_a::Work<D>,
     /// Positions before the last move, for section crossings.
     before: Vec<Vector<D>>,
 }
@@ -167,6 +173,7 @@ impl<const D: usize> Solver<D> {
             periodic,
             materials,
             mut walls,
+            ghost_depth,
             mut plates,
             sources,
             sinks,
@@ -190,6 +197,7 @@ impl<const D: usize> Solver<D> {
             materials,
             kernel,
             walls,
+            ghost_depth,
             fixed_groups,
             plates,
             sources,
@@ -204,6 +212,7 @@ impl<const D: usize> Solver<D> {
             inertial_number: Vec::new(),
             prediction: Vec::new(),
             viscous: Viscous::default(),
+            paper_a: paper_a::Work::default(),
             before: Vec::new(),
         }
     }
@@ -247,14 +256,11 @@ impl<const D: usize> Solver<D> {
         on_move: &mut OnMove<'_, D>,
     ) -> Result<SubStep, SolverError> {
         let (dt, bound) = self.choose_step(state, end)?;
+        if let Scheme::PaperA(choices) = self.numerics.scheme {
+            return self.step_paper_a(&choices, state, (dt, bound), on_move);
+        }
         self.sweep_pressure(state, dt);
-        let iterations = match self.numerics.scheme {
-            Scheme::Implicit => self.solve_viscous(state, dt)?,
-            Scheme::Explicit => {
-                self.explicit_viscous(state, dt);
-                0
-            }
-        };
+        let iterations = self.solve_viscous(state, dt)?;
         self.add_reactions(state, dt);
         self.move_grains(state, dt)?;
         on_move(&self.before, &state.grains.position, &state.grains.mass);
@@ -281,7 +287,10 @@ impl<const D: usize> Solver<D> {
 
     /// The stable step, shortened so that equal steps end at `end`.
     fn choose_step(&self, state: &State<D>, end: f64) -> Result<(f64, StepBound), SolverError> {
-        let (stable, bound) = self.step_bound(state.time, &state.grains.density)?;
+        let (stable, bound) = match self.numerics.scheme {
+            Scheme::Implicit => self.step_bound(state.time)?,
+            Scheme::PaperA(_) => self.bound_paper_a(state.time)?,
+        };
         let left = end - state.time;
         let count = (left / stable - 1e-9).ceil().max(1.0);
         if count <= 1.0 {
@@ -373,8 +382,13 @@ impl<const D: usize> Solver<D> {
     }
 
     fn derive(&mut self, state: &State<D>) {
-        self.sweep_kinematics(state);
-        self.respond(state);
+        match self.numerics.scheme {
+            Scheme::Implicit => {
+                self.sweep_kinematics(state);
+                self.respond(state);
+            }
+            Scheme::PaperA(choices) => self.derive_paper_a(&choices, state),
+        }
     }
 
     /// The first particle for which `fine` is false, as an error.

@@ -1,12 +1,14 @@
 //! Every numerical choice a scene may make, with the defaults of docs/theory.md.
 
-/// How the viscous stress is integrated in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+use super::PaperA;
+
+/// The whole scheme: how forces are formed and how they are integrated in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scheme {
     /// Adjoint stress form, implicit viscosity, pressure diffusion: the default.
     Implicit,
-    /// [A]'s explicit pair viscosity (A.27) with its regularisation (A.47, A.55) and step bound (A.39).
-    Explicit,
+    /// [A]'s own scheme, the reference: explicit pair viscosity, Morris ghosts, Verlet steps.
+    PaperA(PaperA),
 }
 
 /// Numerical choices. All resolved: the scene reader fills in what a file leaves out.
@@ -18,7 +20,8 @@ pub struct Numerics {
     pub smoothing_ratio: f64,
     /// Artificial sound speed c0 [m/s]; default 10 max(sqrt(g H), expected speed).
     pub sound_speed: f64,
-    /// Time integration.
+    /// The scheme. `PaperA` uses spacing, smoothing ratio, sound speed, Courant number, artificial viscosity, jitter and
+    /// seed of this table, and none of the others.
     pub scheme: Scheme,
     /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.5.
     pub courant: f64,

@@ -2,7 +2,7 @@
 
 use crate::math::maximum;
 
-use super::{Scheme, Solver, SolverError, StepBound};
+use super::{Solver, SolverError, StepBound};
 
 impl<const D: usize> Solver<D> {
     /// dt <= courant h / c0.
@@ -21,33 +21,12 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Explicit viscosity only: dt <= courant 0.1 rho h^2 / eta ([A] eq. 39).
-    fn viscous_bound(&self, density: &[f64]) -> f64 {
-        let h2 = self.kernel.h * self.kernel.h;
-        let most = maximum(density.len(), |i| self.viscosity[i] / density[i]);
-        if most > 0.0 {
-            self.numerics.courant * 0.1 * h2 / most
-        } else {
-            f64::INFINITY
-        }
-    }
-
     /// Largest stable step now, and what bounds it.
-    pub(super) fn step_bound(
-        &self,
-        time: f64,
-        density: &[f64],
-    ) -> Result<(f64, StepBound), SolverError> {
+    pub(super) fn step_bound(&self, time: f64) -> Result<(f64, StepBound), SolverError> {
         let mut best = (self.acoustic_bound(), StepBound::Acoustic);
         let motion = self.motion_bound();
         if motion < best.0 {
             best = (motion, StepBound::Motion);
-        }
-        if self.numerics.scheme == Scheme::Explicit {
-            let viscous = self.viscous_bound(density);
-            if viscous < best.0 {
-                best = (viscous, StepBound::Viscous);
-            }
         }
         let smallest = 1e-6 * self.acoustic_bound();
         if best.0 < smallest {

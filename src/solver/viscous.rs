@@ -272,41 +272,6 @@ impl<const D: usize> Solver<D> {
             });
     }
 
-    /// Explicit use of the pair form with its whole viscosity ([A] eq. 27): the new velocities.
-    pub(super) fn explicit_viscous(&mut self, state: &State<D>, dt: f64) {
-        let mut work = std::mem::take(&mut self.viscous);
-        let n = state.grains.len();
-        work.velocity.resize(n, [0.0; D]);
-        let v = &state.grains.velocity;
-        self.workers.blocks_read(
-            &self.lists.blocks,
-            &mut work.velocity,
-            |block, first, out| {
-                for (row, o) in out.iter_mut().enumerate() {
-                    let i = first + row;
-                    let mut f = [0.0; D];
-                    for pair in block.pairs_of(row) {
-                        let along = pair.c * dot(&sub(&v[pair.j as usize], &v[i]), &pair.g);
-                        for k in 0..D {
-                            f[k] += along * pair.g[k];
-                        }
-                    }
-                    let s = dt * self.specific_volume(state, i);
-                    *o = std::array::from_fn(|k| self.prediction[i].velocity[k] + s * f[k]);
-                }
-                for w in &block.wall_rows {
-                    let i = first + w.row as usize;
-                    let drag = crate::math::apply(&w.c, &v[i]);
-                    let s = 2.0 * dt * self.specific_volume(state, i);
-                    for k in 0..D {
-                        out[w.row as usize][k] -= s * (drag[k] - w.cv[k]);
-                    }
-                }
-            },
-        );
-        self.viscous = work;
-    }
-
     /// Viscous force of walls on particle i by the last solve [N] (for reactions): needs the stress of that velocity.
     pub(super) fn last_stress(&mut self, state: &State<D>) -> Vec<Tensor<D>> {
         let mut tau = vec![[[0.0; D]; D]; state.grains.len()];

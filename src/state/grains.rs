@@ -22,7 +22,8 @@ pub struct Grains<const D: usize> {
     pub mass: Vec<f64>,
     /// Shear rate relaxed in time, for the equation of state [1/s].
     pub relaxed_shear: Vec<f64>,
-    /// Velocity change of the last viscous solve over its step: its next first guess [m/s^2].
+    /// Velocity change of the last viscous solve over its step: its next first guess. Scheme `paper_a`: the whole
+    /// acceleration at the last half step, from which the next is predicted [m/s^2].
     #[serde(with = "flat")]
     pub viscous_acceleration: Vec<Vector<D>>,
     /// Position when the neighbour lists were built [m].

@@ -6,6 +6,7 @@
 mod collapse;
 mod conservation;
 mod incline;
+mod paper_a;
 mod rheology;
 mod silo;
 

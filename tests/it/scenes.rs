@@ -8,6 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sandgate::scene::{self, Dimension, GaugeKind, InputTarget, Scene};
+use sandgate::solver::Scheme;
 use serde_json::Value;
 
 fn root() -> &'static Path {
@@ -97,6 +98,52 @@ fn the_fingerprint_is_that_of_the_text() {
     assert_ne!(
         scene::parse("again", &text).unwrap().fingerprint(),
         silo.fingerprint()
+    );
+}
+
+/// Paper A's own cases are as printed in its Tables 2 and 3: K_t, tau_0 and m_0 become what the solver takes.
+#[test]
+fn the_cases_of_paper_a_load_and_are_what_its_tables_say() {
+    let list = fs::read_to_string(root().join("cases/README.md")).unwrap();
+    let files = toml_files("cases/paper_a");
+    assert_eq!(files.len(), 7);
+    for path in &files {
+        let scene = scene::load(path).unwrap_or_else(|e| panic!("{e}"));
+        let stem = path.file_stem().unwrap().to_str().unwrap();
+        assert_eq!(scene.name, stem);
+        assert!(
+            list.contains(&format!("`paper_a/{stem}`")),
+            "{stem} is not listed"
+        );
+    }
+    let column = case("paper_a/column_3");
+    let speed = 1.0 / (4.1e-5_f64 * 2600.0 * 0.6).sqrt();
+    assert!((column.numerics.sound_speed / speed - 1.0).abs() < 1e-12);
+    let Scheme::PaperA(choices) = column.numerics.scheme else {
+        panic!("{:?}", column.numerics.scheme);
+    };
+    assert_eq!(
+        (
+            choices.reference_yield_stress,
+            choices.scaling_time,
+            choices.ghost_velocity_factor
+        ),
+        (795.0, 1.2, 1.5)
+    );
+    // The slope of the plane lies between the friction angles; the default scheme starts from its profile as well.
+    let text = case("paper_a/inclined_plane").source;
+    let flat = text.replace("slope = \"25 deg\"", "slope = \"20 deg\"");
+    let message = scene::parse("flat.toml", &flat).unwrap_err().to_string();
+    assert!(message.contains("a slope of 20.00 deg"), "{message}");
+    let own_keys = ["scheme", "reference_yield_stress", "scaling_time"];
+    let kept = |line: &&str| !own_keys.iter().any(|key| line.starts_with(key));
+    let implicit = text.lines().filter(kept).collect::<Vec<_>>().join("\n");
+    assert_eq!(
+        scene::parse("other.toml", &implicit)
+            .unwrap()
+            .numerics
+            .scheme,
+        Scheme::Implicit
     );
 }
 
@@ -278,7 +325,8 @@ fn walk(value: &Value, visit: &mut impl FnMut(&serde_json::Map<String, Value>)) 
 #[test]
 fn every_case_meets_the_schema_and_wrong_ones_do_not() {
     let schema: Value = serde_json::from_str(&scene::schema()).unwrap();
-    for path in toml_files("cases") {
+    let cases = toml_files("cases").into_iter();
+    for path in cases.chain(toml_files("cases/paper_a")) {
         let text = fs::read_to_string(&path).unwrap();
         let read = |text: &str| {
             let table: toml::Table = text.parse().unwrap();

@@ -3,7 +3,7 @@
 use super::geometry::{Region, crossing_edges, cut_below, signed_area};
 use super::{Lift, dot};
 use crate::scene::raw::{At, Coordinates, Entry, Length, List, Place, RawBody, RawBox, RawColumn};
-use crate::scene::types::Body;
+use crate::scene::types::{Body, VelocityProfile};
 use crate::shape::Shape;
 
 /// Most corners of an outline: pairs of edges are compared.
@@ -41,6 +41,10 @@ impl Lift<'_> {
             shape,
             level: raw.level.as_ref().map(|l| l.value.0),
             velocity: velocity?,
+            profile: match raw.velocity_profile {
+                Some(_) => VelocityProfile::Bagnold,
+                None => VelocityProfile::Uniform,
+            },
         })
     }
 

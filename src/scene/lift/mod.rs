@@ -12,6 +12,8 @@ mod gauges;
 mod geometry;
 mod material;
 mod numerics;
+mod paper_a;
+mod profile;
 mod run;
 mod walls;
 
@@ -24,6 +26,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     let mut lift = Lift::new(raw, problems);
     let materials = lift.materials();
     let bodies = lift.bodies();
+    lift.check_velocity_profiles(&materials, &bodies);
     let walls = lift.walls();
     let gates = lift.gates();
     let inflows = lift.inflows(&materials);
@@ -31,7 +34,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     let gauges = lift.gauges();
     lift.check_bodies_against_devices();
     lift.check_something_flows();
-    let numerics = lift.numerics();
+    let numerics = lift.numerics(&materials);
     let run = lift.run();
     let schedules = lift.schedules(&inflows);
     let log = lift.log(run);

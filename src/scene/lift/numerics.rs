@@ -1,8 +1,9 @@
 //! Numerical choices: resolution against the bodies, and the sound speed if the file does not give it.
 
 use super::Lift;
-use crate::scene::raw::{Place, RawNumerics, SchemeWord};
-use crate::solver::{Numerics, Scheme};
+use crate::scene::raw::{Place, RawNumerics};
+use crate::scene::types::NamedMaterial;
+use crate::solver::Numerics;
 
 /// Most particles of a scene: memory of a large machine.
 const MOST_PARTICLES: f64 = 50e6;
@@ -10,19 +11,17 @@ const MOST_PARTICLES: f64 = 50e6;
 const MOST_CELLS: f64 = 1e9;
 
 impl Lift<'_> {
-    pub(super) fn numerics(&mut self) -> Option<Numerics> {
+    pub(super) fn numerics(&mut self, materials: &[Option<NamedMaterial>]) -> Option<Numerics> {
         let table = self.raw.numerics.as_ref()?;
         let raw = &table.value;
         self.check_particle_count(raw);
-        let sound_speed = self.sound_speed(raw, &table.place);
+        let sound_speed = self.sound_speed(raw, &table.place, materials);
+        let scheme = self.scheme(raw, &table.place, materials);
         Some(Numerics {
             spacing: raw.spacing.as_ref()?.value.0,
             smoothing_ratio: raw.smoothing_ratio.as_ref()?.value.0,
             sound_speed: sound_speed?,
-            scheme: match raw.scheme.as_ref()?.value {
-                SchemeWord::Implicit => Scheme::Implicit,
-                SchemeWord::Explicit => Scheme::Explicit,
-            },
+            scheme: scheme?,
             courant: raw.courant.as_ref()?.value.0,
             cap_time: raw.cap_time.as_ref()?.value.0,
             density_diffusion: raw.density_diffusion.as_ref()?.value.0,
@@ -73,8 +72,17 @@ impl Lift<'_> {
         }
     }
 
-    /// c0 as given, or 10 max(sqrt(g H), expected speed).
-    fn sound_speed(&mut self, raw: &RawNumerics, table: &Place) -> Option<f64> {
+    /// c0 as given, or from the grains' compressibility, or 10 max(sqrt(g H), expected speed).
+    fn sound_speed(
+        &mut self,
+        raw: &RawNumerics,
+        table: &Place,
+        materials: &[Option<NamedMaterial>],
+    ) -> Option<f64> {
+        if raw.given.contains(&"grain_compressibility") {
+            let at = raw.grain_compressibility.as_ref()?;
+            return self.speed_of_grains(raw, at.value.0, &at.place, materials);
+        }
         let expected = raw.expected_speed.as_ref()?.value.0;
         if let Some(given) = &raw.sound_speed {
             if given.value.0 < expected {
@@ -105,8 +113,42 @@ impl Lift<'_> {
         None
     }
 
+    /// c0 = 1/sqrt(K_t rho_s0 phi_max), which must be one for all materials.
+    fn speed_of_grains(
+        &mut self,
+        raw: &RawNumerics,
+        compressibility: f64,
+        place: &Place,
+        materials: &[Option<NamedMaterial>],
+    ) -> Option<f64> {
+        if let Some(other) = &raw.sound_speed {
+            self.problems.report(
+                place,
+                format!("grain_compressibility beside {}", other.place.key),
+                "one of grain_compressibility and sound_speed: each follows from the other",
+                "delete one of them",
+            );
+            return None;
+        }
+        let mut densities = materials
+            .iter()
+            .flatten()
+            .map(|m| m.material.rest_density());
+        let rho = densities.next()?;
+        if densities.any(|other| (other - rho).abs() > 1e-9 * rho) {
+            self.problems.report(
+                place,
+                "materials of different densities at rest",
+                "grain_compressibility only where all materials weigh the same: there is one sound speed",
+                "give sound_speed instead",
+            );
+            return None;
+        }
+        Some(1.0 / (compressibility * rho).sqrt())
+    }
+
     /// Height of the highest material over the lowest wall or material; `None` without bodies.
-    fn material_height(&self) -> Option<f64> {
+    pub(super) fn material_height(&self) -> Option<f64> {
         let tops = self.filled.iter().map(|(_, region)| {
             let (lower, upper) = region.bounds();
             let (a, b) = (self.height(lower), self.height(upper));

@@ -18,4 +18,4 @@ pub(super) use values::{Angle, Density, Length, Pressure, Ratio, Text};
 use declare::{choice, table, tagged};
 use range::Range;
 use read::{Field, KeySpec, Need, Node, refuse_unknown};
-use values::{Flag, MassRate, Name, Speed, Time, Whole, choose, read_word};
+use values::{Compressibility, Flag, MassRate, Name, Speed, Time, Whole, choose, read_word};

@@ -79,10 +79,18 @@ table! {
         optional sound_speed: Speed, in Range::above(0.0);
         /// Largest speed that the flow is expected to reach; raises the sound speed. Give it when material moves faster than sqrt(g H).
         optional expected_speed: Speed, in Range::from(0.0), default 0;
-        /// How viscous stress is integrated in time.
+        /// Compressibility K_t of the grains, instead of sound_speed: c0 = 1/sqrt(K_t rho_s phi_max), rho_s the grains' density.
+        optional grain_compressibility: Compressibility, in Range::above(0.0);
+        /// How forces are formed and integrated in time.
         optional scheme: SchemeWord, default "implicit";
         /// Acoustic Courant number: internal step over h/c0.
         optional courant: Ratio, in Range::above_to(0.0, 1.0), default 0.5;
+        /// Scheme paper_a: the largest yield stress that is expected, tau_0; if left out, tan(static_friction_angle) times the weight of the deepest material.
+        optional reference_yield_stress: Pressure, in Range::above(0.0);
+        /// Scheme paper_a: scaling time m_0 of the regularised viscosity at that stress. Longer creeps less and takes smaller steps.
+        optional scaling_time: Time, in Range::above(0.0), default "1 s";
+        /// Scheme paper_a: largest factor beta_max of a grain's velocity against the ghosts behind a wall.
+        optional ghost_velocity_factor: Ratio, in Range::within(1.0, 10.0), default 1.5;
         /// Cap of the viscosity: at most cap_time x mu_s x pressure. Longer creeps less at rest.
         optional cap_time: Time, in Range::above(0.0), default "20 s";
         /// Density diffusion; 0 switches it off.
@@ -107,12 +115,12 @@ table! {
 }
 
 choice! {
-    /// Time integration.
+    /// Discretisation and time integration.
     SchemeWord {
-        /// implicit viscosity, steps bounded by sound only
+        /// the default: implicit viscosity, steps bounded by sound only
         "implicit" => Implicit,
-        /// explicit pair viscosity, steps bounded by viscosity
-        "explicit" => Explicit,
+        /// the scheme of Minatti and Paris (2015) as they wrote it, for comparison: explicit, steps bounded by viscosity, straight fixed walls without slip only
+        "paper_a" => PaperA,
     }
 }
 
@@ -245,6 +253,16 @@ table! {
         optional level: Length;
         /// Velocity at the start.
         optional velocity: Coordinates<Speed>;
+        /// A layer on a slope that starts in steady flow; only for a box whose lower side lies on the bed.
+        optional velocity_profile: ProfileWord;
+    }
+}
+
+choice! {
+    /// Velocity over the height of a layer.
+    ProfileWord {
+        /// Bagnold's profile of steady flow, added to velocity, with its density and shear rate
+        "bagnold" => Bagnold,
     }
 }
 

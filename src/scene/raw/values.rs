@@ -94,6 +94,8 @@ scalars! {
     Density => Quantity::Density;
     /// A pressure or stress [Pa].
     Pressure => Quantity::Pressure;
+    /// A compressibility [1/Pa].
+    Compressibility => Quantity::Compressibility;
     /// A number \[1\].
     Ratio => Quantity::Ratio;
 }

@@ -2,7 +2,7 @@
 
 use super::{Unit, case};
 use sandgate::scene::{self, Scene};
-use sandgate::solver::{Scheme, Solver, StepInputs};
+use sandgate::solver::{PaperA, Scheme, Solver, StepInputs};
 use sandgate::state::State;
 
 const CASES: [&str; 6] = [
@@ -137,18 +137,21 @@ fn an_isolated_body_keeps_its_momentum_at_a_loose_tolerance() {
     );
 }
 
-/// Artificial viscosity and the explicit scheme act pair by pair too.
+/// Artificial viscosity and scheme `paper_a` act pair by pair too.
 #[test]
 fn every_scheme_keeps_momentum_and_loses_energy() {
     let mut scene = block([0.0, 0.0]);
     scene.numerics.artificial_viscosity = 0.05;
     let (_, damped) = run(&scene, 0.01);
     scene.numerics.artificial_viscosity = 0.0;
-    scene.numerics.scheme = Scheme::Explicit;
-    scene.numerics.cap_time = 1.0;
+    scene.numerics.scheme = Scheme::PaperA(PaperA {
+        reference_yield_stress: 500.0,
+        scaling_time: 1.0,
+        ghost_velocity_factor: 1.5,
+    });
     let (start, explicit) = run(&scene, 0.01);
     let (before, scale) = momentum(&start);
-    for (name, end) in [("artificial viscosity", &damped), ("explicit", &explicit)] {
+    for (name, end) in [("artificial viscosity", &damped), ("paper_a", &explicit)] {
         let (after, _) = momentum(end);
         for k in 0..2 {
             assert!(
