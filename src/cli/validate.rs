@@ -37,6 +37,9 @@ pub(super) struct Args {
     /// Folder in which finished runs are kept [default: out/validation, or out/validation/quick]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Folder with reference data that are not part of the program (cases/reference/SOURCE.md says which)
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
     /// Folder for the pages [default: docs/validation, or out/validation/quick/pages]
     #[arg(long, value_name = "DIR")]
     pages: Option<PathBuf>,
@@ -133,7 +136,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             ));
             continue;
         }
-        let summary = page::write(args.pages(), study, effort, &found)?;
+        let summary = page::write(args.pages(), study, &found, args.data.as_deref())?;
         lines.push(format!("  {:24} {}", study.name, summary.verdict()));
     }
     page::write_index(args.pages(), &studies::ALL)?;

@@ -9,8 +9,18 @@ impl Material {
     #[must_use]
     pub fn regularised_viscosity(&self, gamma: f64, p: f64, m0: f64, tau_0: f64) -> f64 {
         let tau_y = self.yield_stress(p);
-        if p <= 0.0 || tau_y <= 0.0 {
-            return 0.0;
+        if p > 0.0 && tau_y <= 0.0 {
+            // A law without yield stress: nothing to regularise but its own steep start, by the plain cap.
+            let cap = m0 * self.strength(p);
+            return if gamma > 0.0 {
+                cap.min(self.shear_stress(gamma, p, 1.0) / gamma)
+            } else {
+                cap
+            };
+        }
+        if p <= 0.0 {
+            // Cohesion alone: no pressure that m_p could follow.
+            return self.cohesion * delivered(-m0 * gamma, gamma, m0);
         }
         let eta0 = self.viscosity_above_yield(gamma, p);
         let p_0 = ((tau_0 - self.cohesion) / self.law.static_friction()).max(f64::MIN_POSITIVE);
@@ -18,12 +28,8 @@ impl Material {
         // ln of the factor that makes the relative error independent of pressure; m_p >= 0.
         let shift = (reference * gamma).ln_1p() - (eta0 / tau_y * gamma).ln_1p();
         let exponent = (-m0 * gamma + shift).min(0.0);
-        let scaled = if gamma > 1e-9 {
-            -exponent.exp_m1() / gamma
-        } else {
-            (m0 + eta0 / tau_y - reference).max(0.0)
-        };
-        eta0 + tau_y * scaled
+        let start = (m0 + eta0 / tau_y - reference).max(0.0);
+        eta0 + tau_y * delivered(exponent, gamma, start)
     }
 
     /// (tau - tau_y)/gamma; its limit, the slope of tau, at gamma = 0 [Pa s].
@@ -36,10 +42,19 @@ impl Material {
     }
 }
 
+/// (1 - exp(exponent))/gamma [s]; `start` is its limit at gamma = 0.
+fn delivered(exponent: f64, gamma: f64, start: f64) -> f64 {
+    if gamma > 1e-9 {
+        -exponent.exp_m1() / gamma
+    } else {
+        start
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::Grains;
+    use crate::material::{BarkerGray, Grains, Law, MuI};
 
     #[test]
     fn regularised_viscosity_has_the_papers_largest_value() {
@@ -59,5 +74,25 @@ mod tests {
         let g = 60.0;
         let ratio = m.regularised_viscosity(g, p, 1.2, 795.0) * g / m.shear_stress(g, p, 1.0);
         assert!((ratio - 1.0).abs() < 1e-3);
+    }
+    #[test]
+    fn other_materials_get_their_stress_in_flow_and_no_more_than_the_cap_at_rest() {
+        let sticky = Material {
+            cohesion: 100.0,
+            ..Material::sand_04()
+        };
+        let gray = Material {
+            law: Law::BarkerGray(BarkerGray::new(MuI::glass_beads()).unwrap()),
+            ..Material::glass_beads()
+        };
+        for (m, p) in [(&sticky, 500.0), (&sticky, 0.0), (&gray, 500.0)] {
+            let eta = |gamma: f64| m.regularised_viscosity(gamma, p, 1.2, 795.0);
+            let flow = eta(60.0) * 60.0 / m.shear_stress(60.0, p, 1.0);
+            assert!((flow - 1.0).abs() < 1e-3, "{flow}");
+            // At rest: m0 times the strength, and eta0 of the law's slope.
+            let most = 1.2 * m.strength(p) + 400.0;
+            assert!(eta(0.0) > 0.0 && eta(0.0) <= most, "{}", eta(0.0));
+            assert!((eta(1e-8) / eta(0.0) - 1.0).abs() < 1e-3);
+        }
     }
 }

@@ -99,13 +99,20 @@ impl<const D: usize> Solver<D> {
         let rest = m.rest_density();
         let compressibility = 1.0 / (rest * c0 * c0);
         let b = m.grains.dilatancy_factor(compressibility) * relaxed * relaxed;
-        let x = grain_compression::<D>(rho / rest, b, m.grains.phi_min / m.grains.phi_max);
+        let loosest = m.grains.phi_min / m.grains.phi_max;
+        // Rods of a planar scene are compressed across alone, grains in space and in rings all round.
+        let (x, factor) = if D == 3 || self.geometry.is_axisymmetric() {
+            let x = grain_compression::<3>(rho / rest, b, loosest);
+            (x, Grains::compressed_time_factor::<3>(x))
+        } else {
+            (grain_compression::<2>(rho / rest, b, loosest), 1.0)
+        };
         let pressure = (x - 1.0) / compressibility;
         // Parted material carries nothing; dense material without pressure still has its cohesion.
         if pressure <= 0.0 && (m.cohesion == 0.0 || !m.is_dense(rho)) {
             return Response::default();
         }
-        let correction = correction * Grains::compressed_time_factor::<D>(x);
+        let correction = correction * factor;
         let inertial_number = if pressure > 0.0 {
             correction * shear * m.grains.inertial_time(pressure)
         } else {

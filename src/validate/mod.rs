@@ -9,6 +9,7 @@
 
 pub mod bagnold;
 pub mod chart;
+pub mod csv;
 pub mod member;
 pub mod page;
 pub mod picture;

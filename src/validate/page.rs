@@ -56,6 +56,8 @@ pub enum Standing {
 /// A study's recordings as the store has them, in the order of its members; stale ones too.
 #[derive(Debug)]
 pub struct Found {
+    /// Whether they are the quick ones.
+    pub effort: Effort,
     /// The members.
     pub members: Vec<Member>,
     /// What is kept of each.
@@ -77,6 +79,7 @@ impl Found {
             .filter(|(m, r)| r.as_ref().is_some_and(|r| r.key != store.key(m)))
             .count();
         Ok(Self {
+            effort,
             members,
             recordings,
             outdated,
@@ -115,13 +118,13 @@ pub fn members(study: &Study, effort: Effort) -> Result<Vec<Member>, Error> {
 }
 
 impl Summary {
-    fn of(found: &Found, report: &Report, effort: Effort) -> Self {
+    fn of(found: &Found, report: &Report) -> Self {
         let recordings: Vec<&Recording> = found.there().map(|(_, r)| r).collect();
         let mut sources: Vec<String> = recordings.iter().map(|r| r.sources.clone()).collect();
         sources.sort();
         sources.dedup();
         Self {
-            quick: effort == Effort::Quick,
+            quick: found.effort == Effort::Quick,
             met: report.count(Verdict::Met),
             short: report.count(Verdict::FallsShort),
             missing: report.count(Verdict::NoResult),
@@ -173,18 +176,19 @@ pub fn standing(folder: &Path, study: &Study, found: &Found) -> Standing {
     }
 }
 
-/// Analyses what there is of a study and writes its page and figures into `folder`; answers what the page says.
+/// Analyses what there is of a study and writes its page and figures into `folder`; answers what the page says. `data`:
+/// folder with reference data that are not part of the program.
 ///
 /// # Errors
 /// [`Error::File`], [`Error::Figure`] and [`Error::Defect`] if the analysis cannot be made.
 pub fn write(
     folder: &Path,
     study: &Study,
-    effort: Effort,
     found: &Found,
+    data: Option<&Path>,
 ) -> Result<Summary, Error> {
     let recordings = found.there().map(|(m, r)| (m.name.clone(), r.clone()));
-    let results = super::Results::new(effort, recordings.collect());
+    let results = super::Results::new(found.effort, data, recordings.collect());
     let report = (study.analyse)(&results).map_err(|problem| Error::Figure {
         name: study.name.to_owned(),
         problem,
@@ -193,7 +197,7 @@ pub fn write(
         let file = folder.join(format!("{}_{}.svg", study.name, figure.name));
         replace(&file, figure.svg.as_bytes())?;
     }
-    let summary = Summary::of(found, &report, effort);
+    let summary = Summary::of(found, &report);
     let text = text(study, found, &report, &summary);
     replace(&folder.join(format!("{}.md", study.name)), text.as_bytes())?;
     Ok(summary)

@@ -1,6 +1,7 @@
 //! What a study is: members to run and an analysis of what they recorded.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -88,15 +89,33 @@ pub struct Study {
 pub struct Results {
     /// How much was computed.
     pub effort: Effort,
+    /// Folder with reference data that are not part of the program, if the user gave one.
+    data: Option<PathBuf>,
     recordings: BTreeMap<String, Recording>,
 }
 
 impl Results {
     /// From recordings, finished or failed.
     #[must_use]
-    pub fn new(effort: Effort, recordings: Vec<(String, Recording)>) -> Self {
-        let recordings = recordings.into_iter().collect();
-        Self { effort, recordings }
+    pub fn new(effort: Effort, data: Option<&Path>, recordings: Vec<(String, Recording)>) -> Self {
+        Self {
+            effort,
+            data: data.map(Path::to_path_buf),
+            recordings: recordings.into_iter().collect(),
+        }
+    }
+
+    /// A file of reference data that is not part of the program; `None` if the user gave no folder.
+    ///
+    /// # Errors
+    /// The folder does not hold the file, or it cannot be read.
+    pub fn data(&self, name: &str) -> Result<Option<String>, String> {
+        let Some(path) = self.data.as_ref().map(|folder| folder.join(name)) else {
+            return Ok(None);
+        };
+        let text = std::fs::read_to_string(&path);
+        text.map(Some)
+            .map_err(|error| format!("{}: {error}", path.display()))
     }
 
     /// A member that ran to its end.

@@ -355,7 +355,7 @@ fn pages_say_what_was_found_and_whether_it_is_current() {
     let look = |store: &Store| Found::new(&STUDY, Effort::Full, store).unwrap();
     let pages = desk.pages();
     let page = || std::fs::read_to_string(pages.join("drops.md")).unwrap();
-    page::write(&pages, &STUDY, Effort::Full, &look(&desk.store)).unwrap();
+    page::write(&pages, &STUDY, &look(&desk.store), None).unwrap();
     assert!(
         page().contains("**no result**") && page().contains("0 of 4 runs"),
         "{}",
@@ -368,7 +368,7 @@ fn pages_say_what_was_found_and_whether_it_is_current() {
         Standing::Stale
     );
 
-    let summary = page::write(&pages, &STUDY, Effort::Full, &look(&desk.store)).unwrap();
+    let summary = page::write(&pages, &STUDY, &look(&desk.store), None).unwrap();
     assert_eq!(
         (summary.met, summary.short, summary.missing, summary.members),
         (1, 0, 0, (4, 4))
@@ -386,17 +386,23 @@ fn pages_say_what_was_found_and_whether_it_is_current() {
     );
     // Again from the same recordings: the same bytes.
     let before = page();
-    page::write(&pages, &STUDY, Effort::Full, &look(&desk.store)).unwrap();
+    page::write(&pages, &STUDY, &look(&desk.store), None).unwrap();
     assert_eq!(page(), before);
 
     // Another solver: the recordings are old, and the page says so.
     let newer = Store::new(desk.folder.path(), "sources-2");
     assert_eq!(look(&newer).outdated, 4);
-    page::write(&pages, &STUDY, Effort::Full, &look(&newer)).unwrap();
+    page::write(&pages, &STUDY, &look(&newer), None).unwrap();
     assert!(page().contains("4 of 4 runs are older"), "{}", page());
-    page::write(&pages, &STUDY, Effort::Quick, &look(&newer)).unwrap();
+    page::write(
+        &pages,
+        &STUDY,
+        &Found::new(&STUDY, Effort::Quick, &newer).unwrap(),
+        None,
+    )
+    .unwrap();
     assert!(page().contains("judge nothing"), "{}", page());
-    page::write(&pages, &STUDY, Effort::Full, &look(&newer)).unwrap();
+    page::write(&pages, &STUDY, &look(&newer), None).unwrap();
 
     page::write_index(&pages, &[STUDY]).unwrap();
     let index = std::fs::read_to_string(pages.join("README.md")).unwrap();
@@ -437,7 +443,7 @@ fn the_studies_are_sound() {
                 assert!(names.insert(member.name.clone()), "{} twice", member.name);
             }
             // Without a single result a page is still made, and nothing is met.
-            let report = (study.analyse)(&Results::new(effort, Vec::new())).unwrap();
+            let report = (study.analyse)(&Results::new(effort, None, Vec::new())).unwrap();
             assert_eq!(report.count(Verdict::Met), 0, "{}", study.name);
             assert!(report.count(Verdict::NoResult) > 0, "{}", study.name);
         }

@@ -524,6 +524,7 @@ fn info_tells_what_a_case_holds_costs_and_leaves_out() {
         "small_silo",
         "320 of spacing 0.004 m",
         "body     fill: 320 particles of beads",
+        "material beads: mu(I), mu_s 0.3819 to mu_2 0.6435, I0 0.2790",
         "wall     left: chain of 3 points, no slip",
         "gate     main",
         "outflow  drain",

@@ -98,22 +98,8 @@ impl Column {
     fn member(&self, name: String, seed: u32, spacing: f64, until: f64) -> Result<Member, String> {
         // Room for a run-out a quarter beyond the largest published one.
         let reach = R0 * (1.0 + 1.25 * self.planar_band().1) + 10.0 * spacing;
-        let text = Template::new(TEMPLATE)?
-            .with("domain.lower", point(-reach, -8.0 * spacing))
-            .with(
-                "domain.upper",
-                point(reach, 1.2 * self.height + 8.0 * spacing),
-            )
-            .with("numerics.spacing", spacing)
+        let text = scene([R0, self.height], spacing, reach)?
             .with("numerics.seed", i64::from(seed))
-            .with(
-                "bodies.column.box",
-                rectangle([-R0, 0.0], [R0, self.height]),
-            )
-            .with(
-                "walls.floor.polyline",
-                points(&[[-reach, 0.0], [reach, 0.0]]),
-            )
             .with("run.step", self.fall() / 20.0)
             .with("run.until", until)
             .text()?;
@@ -124,6 +110,23 @@ impl Column {
         };
         Ok(Member::new(name, text, &SERIES, pictures))
     }
+}
+
+/// The template with a column of this half-width and height, and room to run out to `reach` on both sides [m].
+pub(super) fn scene(size: [f64; 2], spacing: f64, reach: f64) -> Result<Template, String> {
+    let [half_width, height] = size;
+    Ok(Template::new(TEMPLATE)?
+        .with("domain.lower", point(-reach, -8.0 * spacing))
+        .with("domain.upper", point(reach, 1.2 * height + 8.0 * spacing))
+        .with("numerics.spacing", spacing)
+        .with(
+            "bodies.column.box",
+            rectangle([-half_width, 0.0], [half_width, height]),
+        )
+        .with(
+            "walls.floor.polyline",
+            points(&[[-reach, 0.0], [reach, 0.0]]),
+        ))
 }
 
 fn members(effort: Effort) -> Result<Vec<Member>, String> {

@@ -31,6 +31,8 @@ const TEMPLATE: &str = include_str!("../../../cases/validation/incline.toml");
 /// Window of time means [s].
 const WINDOW: f64 = 3.0;
 const BINS: usize = 20;
+/// Particles in a period along the plane.
+const COLUMNS: f64 = 10.0;
 
 /// How a layer starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,6 +149,17 @@ impl Run {
         }
     }
 
+    /// The layer that a run has: its depth at phi_max from its mass, whatever density it started with.
+    fn layer_of(&self, recording: &Recording) -> Layer {
+        let mut layer = self.layer();
+        let rows = recording.particles as f64 / COLUMNS;
+        if let Some(mass) = recording.last("mass.present").filter(|_| rows > 0.0) {
+            let period = COLUMNS * DEPTH / rows;
+            layer.depth = mass / (period * layer.material.grain_density * layer.material.phi_max);
+        }
+        layer
+    }
+
     /// Largest speed that is expected [m/s].
     fn speed(&self) -> f64 {
         match self.start {
@@ -159,7 +172,7 @@ impl Run {
         let rows = effort.pick(self.rows, self.rows / 2);
         let until = effort.pick(self.until, self.until / 6.0);
         let spacing = DEPTH / f64::from(rows);
-        let period = 10.0 * spacing;
+        let period = COLUMNS * spacing;
         let mut template = Template::new(TEMPLATE)?
             .with("domain.upper", point(period, 1.5 * DEPTH))
             .with("domain.slope", self.slope.to_radians())
@@ -264,13 +277,15 @@ fn analyse(results: &Results) -> Result<Report, String> {
 /// What a run gave, if it finished.
 fn l2(results: &Results, run: &Run) -> Option<f64> {
     let recording = results.finished(run.name)?;
-    rms(&velocity_errors(window(recording), &run.layer()))
+    rms(&velocity_errors(
+        window(recording),
+        &run.layer_of(recording),
+    ))
 }
 
 fn steady(results: &Results, run: &Run) -> Vec<Metric> {
-    let layer = run.layer();
     let recording = results.finished(run.name);
-    let errors = recording.map(|r| velocity_errors(window(r), &layer));
+    let errors = recording.map(|r| velocity_errors(window(r), &run.layer_of(r)));
     let name = format!(
         "{} at {} deg, {} particles over the depth, h/dp {}",
         run.preset, run.slope, run.rows, run.smoothing
@@ -280,7 +295,7 @@ fn steady(results: &Results, run: &Run) -> Vec<Metric> {
         "glass_25_fine" => 0.005,
         _ => 0.02,
     };
-    let pressure = recording.and_then(|r| pressure_error(window(r), &layer));
+    let pressure = recording.and_then(|r| pressure_error(window(r), &run.layer_of(r)));
     let pressure_rule = match run.name {
         "glass_25" | "glass_25_fine" => Rule::AtMost(0.012),
         _ => Rule::Report(None),
@@ -321,8 +336,8 @@ fn order(results: &Results) -> Metric {
 
 /// Root mean square over the first ten seconds of mean velocity minus the transient's, over the steady one.
 fn transient(results: &Results) -> Metric {
-    let layer = BASE.layer();
     let value = results.finished(BASE.name).and_then(|recording| {
+        let layer = BASE.layer_of(recording);
         let exact = exact_transient(&layer);
         let found = mean_velocity(recording);
         let early = found.iter().filter(|p| p.0 <= 10.0);
@@ -370,11 +385,11 @@ fn profiles(results: &Results) -> Result<Figure, String> {
     let exact = exact.map(|z| (1.0 - (1.0 - z).powf(1.5), z)).collect();
     let mut curves = vec![Curve::new("exact", exact, Look::Thin, 6)];
     for (colour, run) in FLOWS[..6].iter().enumerate() {
-        let layer = run.layer();
-        let top = layer.dilated_depth();
         let Some(recording) = results.finished(run.name) else {
             continue;
         };
+        let layer = run.layer_of(recording);
+        let top = layer.dilated_depth();
         let Some(last) = recording.snapshots.last() else {
             continue;
         };
@@ -437,4 +452,55 @@ fn starts(results: &Results) -> Result<Figure, String> {
         caption: "Glass beads of 5 mm on 25 degrees from rest.".to_owned(),
         svg: chart.svg()?,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Particles on the exact profile, with a factor on velocity and an offset of pressure.
+    fn flow(layer: &Layer, factor: f64, offset: f64) -> Snapshot {
+        let heights = (0..400).map(|k| (f64::from(k) + 0.5) / 400.0 * layer.dilated_depth());
+        let mut snapshot = Snapshot::default();
+        for z in heights {
+            snapshot.position.push([0.0, z as f32, 0.0]);
+            snapshot
+                .velocity
+                .push([(factor * layer.velocity(z)) as f32, 0.0, 0.0]);
+            snapshot.pressure.push((layer.pressure(z) + offset) as f32);
+        }
+        snapshot
+    }
+
+    #[test]
+    fn an_exact_flow_has_no_error_and_a_known_one_has_its_own() {
+        let layer = BASE.layer();
+        let exact = [flow(&layer, 1.0, 0.0)];
+        assert!(rms(&velocity_errors(&exact, &layer)).unwrap() < 1e-6);
+        assert!(pressure_error(&exact, &layer).unwrap() < 1e-6);
+        let fast = [flow(&layer, 1.02, 0.01 * layer.pressure(0.0))];
+        let errors = velocity_errors(&fast, &layer);
+        assert_eq!(errors.len(), BINS);
+        // Two per cent of a velocity that is almost the surface's in the last bin.
+        assert!(
+            (errors[BINS - 1] - 0.02).abs() < 1e-4,
+            "{}",
+            errors[BINS - 1]
+        );
+        assert!((pressure_error(&fast, &layer).unwrap() - 0.01).abs() < 1e-6);
+    }
+
+    /// A layer filled at the density of its flow is as deep as one that dilates to it.
+    #[test]
+    fn the_depth_follows_from_the_mass() {
+        let layer = BASE.layer();
+        let mut recording = Recording::empty("key".to_owned());
+        recording.particles = 200;
+        let mass = 0.05 * DEPTH * layer.volume_fraction() * layer.material.grain_density;
+        recording
+            .series
+            .insert("mass.present".to_owned(), vec![vec![mass]]);
+        let found = BASE.layer_of(&recording).dilated_depth();
+        assert!((found / DEPTH - 1.0).abs() < 1e-12, "{found}");
+    }
 }

@@ -1,12 +1,23 @@
 //! The studies, one a file. A new one: its file, a line of [`ALL`], and its reference data under cases/reference.
 
 mod columns;
+mod contact;
+mod controls;
 mod incline;
+mod rest;
+mod silo;
 
 use super::Study;
 
 /// All studies, in the order in which they are listed and run.
-pub const ALL: [Study; 2] = [incline::STUDY, columns::STUDY];
+pub const ALL: [Study; 6] = [
+    incline::STUDY,
+    columns::STUDY,
+    contact::STUDY,
+    rest::STUDY,
+    silo::STUDY,
+    controls::STUDY,
+];
 
 /// A study by name.
 #[must_use]
