@@ -96,7 +96,10 @@ fn exact_mass(mass: f64) -> f64 {
 
 fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
     let mut random = Random::new(scene.numerics.seed);
-    let mut grains = Grains::default();
+    let mut grains = Grains {
+        exact_yield: scene.numerics.keeps_stress(),
+        ..Grains::default()
+    };
     let mut id = 0;
     let up = up_axis(scene);
     let jitter = scene.numerics.jitter * scene.numerics.spacing;

@@ -134,7 +134,7 @@ impl<const D: usize> Solver<D> {
         if !self.walls.groups.iter().any(|g| g.wants_force) {
             return;
         }
-        let tau = self.last_stress(state);
+        let tau = &self.viscous.tau;
         let share = self.numerics.pair_viscosity_share;
         let support = self.kernel.support();
         let dissipation = 2.0 * (D as f64 + 2.0);

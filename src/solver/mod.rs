@@ -11,11 +11,13 @@ mod constitutive;
 mod devices;
 mod error;
 mod grid;
+mod implicit;
 mod kinematics;
 mod lists;
 mod numerics;
 mod pair;
 mod paper_a;
+mod plastic;
 mod pressure;
 mod timestep;
 mod validity;
@@ -24,7 +26,7 @@ mod viscous;
 pub use devices::{Sink, Source};
 pub use error::SolverError;
 pub use grid::Periodic;
-pub use numerics::{Numerics, Scheme};
+pub use numerics::{Numerics, Scheme, YieldForm};
 pub use paper_a::PaperA;
 pub use validity::Validity;
 
@@ -36,10 +38,10 @@ use crate::material::Material;
 use crate::math::{Geometry, Vector, Workers, norm};
 use crate::state::State;
 
+use implicit::Viscous;
 use kinematics::Kinematics;
 use lists::Lists;
 use pressure::Prediction;
-use viscous::Viscous;
 
 /// Skin of the neighbour lists over h [1].
 const SKIN: f64 = 0.3;

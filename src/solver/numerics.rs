@@ -11,6 +11,18 @@ pub enum Scheme {
     PaperA(PaperA),
 }
 
+/// How the yield stress holds material that does not flow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum YieldForm {
+    /// Augmented Lagrangian with so many iterations a step: a plug does not creep. The default.
+    Exact {
+        /// Iterations a step, at least 1; default 1, since each step starts from the last one's stress.
+        iterations: u32,
+    },
+    /// Viscosity cap alone: a plug creeps at a rate of up to 1/cap_time.
+    Capped,
+}
+
 /// Numerical choices. All resolved: the scene reader fills in what a file leaves out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numerics {
@@ -25,7 +37,10 @@ pub struct Numerics {
     pub scheme: Scheme,
     /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.5.
     pub courant: f64,
-    /// Viscosity cap: eta <= cap_time mu_s p; a plug creeps at a rate of at most 1/cap_time [s]; default 20 s.
+    /// Exact yield or plain cap.
+    pub yield_form: YieldForm,
+    /// Viscosity cap: eta <= cap_time mu_s p [s]. With the plain cap a plug creeps at up to 1/cap_time; default 20 c0/g.
+    /// With the exact yield it is the penalty of the augmented Lagrangian in a plug; default 2 c0/g.
     pub cap_time: f64,
     /// Density diffusion delta [1]; default 0.1, 0 switches it off.
     pub density_diffusion: f64,
@@ -45,4 +60,12 @@ pub struct Numerics {
     pub jitter: f64,
     /// Seed of that displacement.
     pub seed: u64,
+}
+
+impl Numerics {
+    /// Whether particles keep the stress of the exact yield.
+    #[must_use]
+    pub fn keeps_stress(&self) -> bool {
+        self.scheme == Scheme::Implicit && self.yield_form != YieldForm::Capped
+    }
 }

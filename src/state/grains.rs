@@ -2,11 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::Vector;
+use crate::math::{Tensor, Vector};
 
 /// The particles of a scene. All arrays have the same length.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Grains<const D: usize> {
+    /// Whether the exact yield is on: `stress` and `plastic_rate` are kept.
+    pub exact_yield: bool,
     /// Position x [m].
     #[serde(with = "flat")]
     pub position: Vec<Vector<D>>,
@@ -26,6 +28,12 @@ pub struct Grains<const D: usize> {
     /// acceleration at the last half step, from which the next is predicted [m/s^2].
     #[serde(with = "flat")]
     pub viscous_acceleration: Vec<Vector<D>>,
+    /// Stress multiplier lambda of the exact yield [Pa]; empty without it.
+    #[serde(with = "flat_tensors")]
+    pub stress: Vec<Tensor<D>>,
+    /// Plastic strain rate q of the exact yield [1/s]; empty without it.
+    #[serde(with = "flat_tensors")]
+    pub plastic_rate: Vec<Tensor<D>>,
     /// Position when the neighbour lists were built [m].
     #[serde(with = "flat")]
     pub listed: Vec<Vector<D>>,
@@ -46,6 +54,8 @@ macro_rules! for_each_field {
         $f(&mut $self.mass, $($extra)*);
         $f(&mut $self.relaxed_shear, $($extra)*);
         $f(&mut $self.viscous_acceleration, $($extra)*);
+        $f(&mut $self.stress, $($extra)*);
+        $f(&mut $self.plastic_rate, $($extra)*);
         $f(&mut $self.listed, $($extra)*);
         $f(&mut $self.id, $($extra)*);
         $f(&mut $self.phase, $($extra)*);
@@ -83,6 +93,10 @@ impl<const D: usize> Grains<D> {
         self.mass.push(mass);
         self.relaxed_shear.push(0.0);
         self.viscous_acceleration.push([0.0; D]);
+        if self.exact_yield {
+            self.stress.push([[0.0; D]; D]);
+            self.plastic_rate.push([[0.0; D]; D]);
+        }
         self.listed.push(position);
         self.id.push(id);
         self.phase.push(phase);
@@ -92,7 +106,10 @@ impl<const D: usize> Grains<D> {
     /// Keeps the particles named by `order`, in that order.
     pub fn reorder(&mut self, order: &[u32]) {
         fn pick<T: Copy>(field: &mut Vec<T>, order: &[u32]) {
-            *field = order.iter().map(|&i| field[i as usize]).collect();
+            // Fields of an option that is off are empty.
+            if !field.is_empty() {
+                *field = order.iter().map(|&i| field[i as usize]).collect();
+            }
         }
         for_each_field!(self, pick, order);
     }
@@ -113,7 +130,9 @@ impl<const D: usize> Grains<D> {
             self.phase.len(),
             self.drained.len(),
         ];
+        let optional = if self.exact_yield { n } else { 0 };
         lengths.iter().all(|&l| l == n)
+            && [self.stress.len(), self.plastic_rate.len()] == [optional; 2]
             && self
                 .density
                 .iter()
@@ -124,6 +143,8 @@ impl<const D: usize> Grains<D> {
                 .position
                 .iter()
                 .chain(&self.velocity)
+                .chain(self.stress.as_flattened())
+                .chain(self.plastic_rate.as_flattened())
                 .flatten()
                 .all(|v| v.is_finite())
     }
@@ -170,6 +191,41 @@ pub mod flat {
         } else {
             Err(De::Error::custom(
                 "array length is no multiple of the dimension",
+            ))
+        }
+    }
+}
+
+/// Arrays of tensors as flat arrays of numbers, for serde.
+pub mod flat_tensors {
+    use super::{Tensor, flat};
+    use serde::{Deserializer, Serializer, de::Error};
+
+    /// Writes the components row by row.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<S: Serializer, const D: usize>(
+        tensors: &[Tensor<D>],
+        s: S,
+    ) -> Result<S::Ok, S::Error> {
+        flat::serialize(tensors.as_flattened(), s)
+    }
+
+    /// Reads them back.
+    ///
+    /// # Errors
+    /// A length that is no multiple of D x D.
+    pub fn deserialize<'de, De: Deserializer<'de>, const D: usize>(
+        d: De,
+    ) -> Result<Vec<Tensor<D>>, De::Error> {
+        let rows = flat::deserialize::<De, D>(d)?;
+        let (tensors, rest) = rows.as_chunks::<D>();
+        if rest.is_empty() {
+            Ok(tensors.to_vec())
+        } else {
+            Err(De::Error::custom(
+                "array length is no multiple of a tensor's",
             ))
         }
     }

@@ -7,7 +7,7 @@ mod grains;
 mod random;
 
 pub use cells::CellGrid;
-pub use grains::{Grains, flat};
+pub use grains::{Grains, flat, flat_tensors};
 pub use random::Random;
 
 use serde::{Deserialize, Serialize};

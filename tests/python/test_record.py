@@ -187,7 +187,7 @@ def test_particles_are_packed_as_their_fields_say():
         assert [f.offset for f in cloud.fields] == [4 * i for i in range(10)]
         assert kinds.itemsize == cloud.point_stride
         points = np.frombuffer(cloud.data, kinds)
-        assert 250 < len(points) <= 400
+        assert 200 < len(points) <= 400
         for name in kinds.names:
             assert np.isfinite(points[name]).all(), name
         assert points["x"].min() > -0.03 and points["x"].max() < 0.11

@@ -1,9 +1,9 @@
 //! Numerical choices: resolution against the bodies, and the sound speed if the file does not give it.
 
 use super::Lift;
-use crate::scene::raw::{Place, RawNumerics};
+use crate::scene::raw::{Place, RawNumerics, YieldWord};
 use crate::scene::types::NamedMaterial;
-use crate::solver::Numerics;
+use crate::solver::{Numerics, YieldForm};
 
 /// Most particles of a scene: memory of a large machine.
 const MOST_PARTICLES: f64 = 50e6;
@@ -17,13 +17,18 @@ impl Lift<'_> {
         self.check_particle_count(raw);
         let sound_speed = self.sound_speed(raw, &table.place, materials);
         let scheme = self.scheme(raw, &table.place, materials);
+        let yield_form = yield_form(raw)?;
         Some(Numerics {
             spacing: raw.spacing.as_ref()?.value.0,
             smoothing_ratio: raw.smoothing_ratio.as_ref()?.value.0,
             sound_speed: sound_speed?,
             scheme: scheme?,
             courant: raw.courant.as_ref()?.value.0,
-            cap_time: raw.cap_time.as_ref()?.value.0,
+            yield_form,
+            cap_time: match &raw.cap_time {
+                Some(given) => given.value.0,
+                None => self.cap_time(yield_form, sound_speed?),
+            },
             density_diffusion: raw.density_diffusion.as_ref()?.value.0,
             diffusion_gate_time: raw.diffusion_gate_time.as_ref()?.value.0,
             strain_relaxation_time: raw.strain_relaxation_time.as_ref()?.value.0,
@@ -35,6 +40,17 @@ impl Lift<'_> {
             jitter: raw.jitter.as_ref()?.value.0,
             seed: raw.seed.as_ref()?.value.0,
         })
+    }
+
+    /// A few times the time scale c0/g of the scene; standard gravity stands in where there is none.
+    fn cap_time(&self, form: YieldForm, sound_speed: f64) -> f64 {
+        let g = self.gravity_size();
+        let g = if g > 0.0 { g } else { 9.806_65 };
+        let times = match form {
+            YieldForm::Exact { .. } => 2.0,
+            YieldForm::Capped => 20.0,
+        };
+        times * sound_speed / g
     }
 
     /// Neither more particles nor more grid cells than a machine holds.
@@ -158,4 +174,14 @@ impl Lift<'_> {
         let floor = self.heights.iter().copied().fold(low, f64::min);
         Some(high - floor)
     }
+}
+
+fn yield_form(raw: &RawNumerics) -> Option<YieldForm> {
+    let iterations = raw.yield_iterations.as_ref()?.value.0;
+    Some(match raw.r#yield.as_ref()?.value {
+        YieldWord::Capped => YieldForm::Capped,
+        YieldWord::Exact => YieldForm::Exact {
+            iterations: u32::try_from(iterations).unwrap_or(u32::MAX),
+        },
+    })
 }

@@ -91,8 +91,12 @@ table! {
         optional scaling_time: Time, in Range::above(0.0), default "1 s";
         /// Scheme paper_a: largest factor beta_max of a grain's velocity against the ghosts behind a wall.
         optional ghost_velocity_factor: Ratio, in Range::within(1.0, 10.0), default 1.5;
-        /// Cap of the viscosity: at most cap_time x mu_s x pressure. Longer creeps less at rest.
-        optional cap_time: Time, in Range::above(0.0), default "20 s";
+        /// How the yield stress holds material at rest.
+        optional r#yield: YieldWord, default "exact";
+        /// Iterations of the exact yield in each internal step; they start from the last step's, so 1 is usual.
+        optional yield_iterations: Whole, in Range::within(1.0, 100.0), default 1;
+        /// Cap of the viscosity: at most cap_time x mu_s x pressure. With a capped yield a plug creeps at up to 1/cap_time, and 20 c0/g is taken if this is left out; with the exact yield it sets how fast the iteration goes, and 2 c0/g is taken.
+        optional cap_time: Time, in Range::above(0.0);
         /// Density diffusion; 0 switches it off.
         optional density_diffusion: Ratio, in Range::within(0.0, 1.0), default 0.1;
         /// Time scale that switches density diffusion off where material rests.
@@ -121,6 +125,16 @@ choice! {
         "implicit" => Implicit,
         /// the scheme of Minatti and Paris (2015) as they wrote it, for comparison: explicit, steps bounded by viscosity, straight fixed walls without slip only
         "paper_a" => PaperA,
+    }
+}
+
+choice! {
+    /// What holds material under its yield stress.
+    YieldWord {
+        /// nothing moves under the yield stress
+        "exact" => Exact,
+        /// a very viscous fluid, which creeps at up to 1/cap_time
+        "capped" => Capped,
     }
 }
 

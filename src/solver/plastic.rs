@@ -1,0 +1,65 @@
+//! Exact yield by the augmented Lagrangian (docs/theory.md, E15): a plug does not creep at all.
+//!
+//! Symbols: E = 2 e(v) strain rate with |E| = gamma, q its plastic copy, lambda stress, r = eta of E6 (at most the cap),
+//! |a| = sqrt(a:a/2). Minimises sum m |v - v*|^2/2 + dt sum V Phi(|q|), q = E, where Phi' = tau(|q|, p):
+//!
+//! 1. (M - dt F_r) v = M v* + dt F[lambda - r q]    the linear solve of `implicit`, F_r with viscosity r
+//! 2. x = lambda + r E(v);   |q| solves tau(|q|, p) + r |q| = |x| (0 if |x| is under the yield stress), q = |q| x/|x|
+//! 3. lambda = x - r q, which is on the yield surface or below it
+//!
+//! lambda and q start from the last step's, so a few iterations a step are enough. Fortin & Glowinski 1983 (ALG2).
+
+use crate::material::{Material, Rheology};
+use crate::math::{Tensor, scale};
+use crate::state::State;
+
+use super::Solver;
+use super::implicit::Viscous;
+
+impl<const D: usize> Solver<D> {
+    /// tau = linear stress of v + lambda - r q.
+    pub(super) fn add_plastic_stress(&self, state: &State<D>, work: &mut Viscous<D>) {
+        let (lambda, q) = (&state.grains.stress, &state.grains.plastic_rate);
+        let linear = &work.linear;
+        self.workers.each(&mut work.tau, |i, t| {
+            let r = self.viscosity[i];
+            for a in 0..D {
+                for b in 0..D {
+                    t[a][b] = linear[i][a][b] + (lambda[i][a][b] - r * q[i][a][b]);
+                }
+            }
+        });
+    }
+
+    /// Steps 2 and 3 for every particle, from `work.linear`.
+    pub(super) fn project(&self, state: &mut State<D>, work: &Viscous<D>) {
+        let whole = 1.0 / (1.0 - self.numerics.pair_viscosity_share);
+        let grains = &mut state.grains;
+        for i in 0..grains.len() {
+            let material = &self.materials[grains.phase[i] as usize];
+            let x: Tensor<D> = std::array::from_fn(|a| {
+                std::array::from_fn(|b| grains.stress[i][a][b] + whole * work.linear[i][a][b])
+            });
+            let (stress, rate) = self.admissible(material, i, &x);
+            grains.stress[i] = stress;
+            grains.plastic_rate[i] = rate;
+        }
+    }
+
+    /// (lambda, q) of a trial stress.
+    fn admissible(&self, material: &Material, i: usize, x: &Tensor<D>) -> (Tensor<D>, Tensor<D>) {
+        let (p, r) = (self.pressure[i], self.viscosity[i]);
+        let zero = [[0.0; D]; D];
+        if r <= 0.0 {
+            return (zero, zero);
+        }
+        let size = self.geometry.size(x);
+        let q = material.resolvent(size, r, p, self.kinematics[i].correction);
+        if q <= 0.0 {
+            return (*x, zero);
+        }
+        let rate = x.map(|row| scale(q / size, &row));
+        let stress = x.map(|row| scale(1.0 - r * q / size, &row));
+        (stress, rate)
+    }
+}
