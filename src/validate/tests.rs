@@ -446,6 +446,7 @@ fn the_studies_are_sound() {
             let report = (study.analyse)(&Results::new(effort, None, Vec::new())).unwrap();
             assert_eq!(report.count(Verdict::Met), 0, "{}", study.name);
             assert!(report.count(Verdict::NoResult) > 0, "{}", study.name);
+            assert_eq!(report.count(Verdict::NoResult), report.metrics.len());
         }
     }
 }

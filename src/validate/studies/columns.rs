@@ -1,13 +1,12 @@
 //! `columns`: the six columns of [A] Table 3 in the plane, default scheme, five seeds each.
 
-use crate::validate::chart::{Chart, Curve, Look};
-use crate::validate::picture::{Panel, Picture};
+mod figures;
+pub(super) mod paper_a;
+
 use crate::validate::report::number;
 use crate::validate::statistics::{first_reaching, mean, spread};
 use crate::validate::template::{Template, point, points, rectangle};
-use crate::validate::{
-    Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study, Table,
-};
+use crate::validate::{Effort, Member, Metric, Recording, Report, Results, Rule, Study, Table};
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -32,9 +31,9 @@ const R0: f64 = 0.0972;
 const TEMPLATE: &str = include_str!("../../../cases/validation/column.toml");
 /// Kept at every communication point.
 pub(super) const SERIES: [&str; 4] = [
-    "gauge.left.front",
-    "gauge.right.front",
-    "gauge.centre.depth",
+    "gauge.front_left.front",
+    "gauge.front_right.front",
+    "gauge.depth_centre.depth",
     "energy.kinetic",
 ];
 /// Snapshots, over sqrt(H0/g).
@@ -152,8 +151,8 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
 /// Front over time, mean of both sides [m].
 pub(super) fn front(recording: &Recording) -> Vec<(f64, f64)> {
     let (left, right) = (
-        recording.curve("gauge.left.front"),
-        recording.curve("gauge.right.front"),
+        recording.curve("gauge.front_left.front"),
+        recording.curve("gauge.front_right.front"),
     );
     left.iter()
         .zip(&right)
@@ -163,7 +162,8 @@ pub(super) fn front(recording: &Recording) -> Vec<(f64, f64)> {
 
 /// Run-out at a time [s].
 fn run_out(recording: &Recording, time: f64) -> Option<f64> {
-    let [left, right] = ["gauge.left.front", "gauge.right.front"].map(|g| recording.at(g, time));
+    let [left, right] =
+        ["gauge.front_left.front", "gauge.front_right.front"].map(|g| recording.at(g, time));
     Some((0.5 * (left? + right?) - R0) / R0)
 }
 
@@ -195,7 +195,7 @@ fn seeds(results: &Results, column: &Column, kind: &str) -> Seeds {
         );
         seeds
             .heights
-            .extend(recording.last("gauge.centre.depth").map(|h| h / R0));
+            .extend(recording.last("gauge.depth_centre.depth").map(|h| h / R0));
         // Stopped: 99 % of the way of the front done.
         let front = front(recording);
         let end = R0 + 0.99 * (front.last().map_or(R0, |p| p.1) - R0);
@@ -213,9 +213,13 @@ fn analyse(results: &Results) -> Result<Report, String> {
     }
     report.metrics.push(convergence(results));
     report.tables.push(other_laws(results));
-    report.figures.push(fronts(results)?);
+    report
+        .figures
+        .push(figures::fronts(results, &|c| c.name("", 1))?);
     for column in &COLUMNS {
-        report.figures.extend(pictures(results, column));
+        report
+            .figures
+            .extend(figures::pictures(results, column, &column.name("", 1)));
     }
     report.notes.push(
         "A planar column is another experiment than a round one: its material cannot spread sideways. The planar law is the \
@@ -308,84 +312,4 @@ fn other_laws(results: &Results) -> Table {
         head: head.map(str::to_owned).to_vec(),
         rows: rows.collect(),
     }
-}
-
-/// Front histories in the manner of [A] Fig. 10.
-fn fronts(results: &Results) -> Result<Figure, String> {
-    let mut curves = Vec::new();
-    for (colour, column) in COLUMNS.iter().enumerate() {
-        let Some(recording) = results.finished(&column.name("", 1)) else {
-            continue;
-        };
-        let points = front(recording)
-            .into_iter()
-            .map(|(t, x)| (t / column.fall(), x / R0));
-        let points: Vec<_> = points.filter(|p| p.0 <= 10.0).collect();
-        curves.push(Curve::new(
-            format!("a = {:.2}", column.aspect),
-            points,
-            Look::Line,
-            colour,
-        ));
-        let (low, high) = column.planar_band();
-        let end = points_end(recording, column);
-        let law = [low, high].map(|r| (end, 1.0 + r)).to_vec();
-        curves.push(Curve::new(
-            format!("a = {:.2}, planar law", column.aspect),
-            law,
-            Look::Dots,
-            colour,
-        ));
-    }
-    let chart = Chart {
-        x: "t / sqrt(H0/g)".to_owned(),
-        y: "front / r0".to_owned(),
-        curves,
-    };
-    Ok(Figure {
-        name: "fronts".to_owned(),
-        caption: "Front over time of the first seed (as [A] Fig. 10); dots: the ends of the planar law's band.".to_owned(),
-        svg: chart.svg()?,
-    })
-}
-
-/// Where the laws are drawn: at the end of the curve, over sqrt(H0/g).
-fn points_end(recording: &Recording, column: &Column) -> f64 {
-    let end = recording.time.last().map_or(10.0, |t| t / column.fall());
-    end.min(10.0)
-}
-
-/// Particles of the first seed, as [A] Figs. 11 and 12.
-fn pictures(results: &Results, column: &Column) -> Option<Figure> {
-    let recording = results.finished(&column.name("", 1))?;
-    let reach = front(recording).iter().fold(R0, |most, p| most.max(p.1)) * 1.05;
-    let panel = |s: &crate::validate::Snapshot| Panel {
-        caption: format!(
-            "t = {} sqrt(H0/g)",
-            number((s.time / column.fall() * 100.0).round() / 100.0)
-        ),
-        particles: s
-            .position
-            .iter()
-            .zip(&s.velocity)
-            .map(|(x, v)| [x[0], x[1], v[0].hypot(v[1])])
-            .collect(),
-    };
-    let picture = Picture {
-        lower: [-reach, 0.0],
-        upper: [reach, 1.05 * column.height],
-        // Of the run, which may be a coarse one.
-        spacing: (2.0 * R0 * column.height / recording.particles.max(1) as f64).sqrt(),
-        most: (GRAVITY * column.height).sqrt(),
-        label: "speed [m/s]".to_owned(),
-        panels: recording.snapshots.iter().map(panel).collect(),
-    };
-    Some(Figure {
-        name: format!("a{:03.0}", 100.0 * column.aspect),
-        caption: format!(
-            "a = {:.2}: particles, coloured by speed up to sqrt(g H0).",
-            column.aspect
-        ),
-        svg: picture.svg(),
-    })
 }

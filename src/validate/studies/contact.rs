@@ -212,7 +212,7 @@ fn judge_fronts(results: &Results, column: &Discs, rows: &[[f64; 4]]) -> Vec<Met
     };
     let centre = |time: f64| {
         let at = |r: &Recording| {
-            r.at("gauge.centre.depth", time * fall())
+            r.at("gauge.depth_centre.depth", time * fall())
                 .map(|h| h / HEIGHT)
         };
         mean(

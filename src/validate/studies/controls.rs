@@ -75,7 +75,7 @@ fn frame(name: &str, effort: Effort, speed: f64) -> Result<Member, String> {
     Ok(Member::new(
         name.to_owned(),
         text,
-        &["gauge.right.front"],
+        &["gauge.front_right.front"],
         Vec::new(),
     ))
 }
@@ -105,8 +105,8 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
 fn run_out(results: &Results, name: &str) -> Option<f64> {
     let recording = results.finished(name)?;
     let sides = [
-        recording.last("gauge.left.front")?,
-        recording.last("gauge.right.front")?,
+        recording.last("gauge.front_left.front")?,
+        recording.last("gauge.front_right.front")?,
     ];
     Some((0.5 * (sides[0] + sides[1]) - R0) / R0)
 }
@@ -127,12 +127,12 @@ fn analyse(results: &Results) -> Result<Report, String> {
     let law = 1.24 * 0.90;
     let frames = results.finished("at_rest").zip(results.finished("moving"));
     let shift = frames.and_then(|(rest, moving)| {
-        let there = moving.last("gauge.right.front")? - BOOST * SEEN_AT;
-        Some((there - rest.last("gauge.right.front")?).abs() / H0)
+        let there = moving.last("gauge.front_right.front")? - BOOST * SEEN_AT;
+        Some((there - rest.last("gauge.front_right.front")?).abs() / H0)
     });
     let moved = results
         .finished("at_rest")
-        .and_then(|r| Some(r.last("gauge.right.front")? / R0 - 1.0));
+        .and_then(|r| Some(r.last("gauge.front_right.front")? / R0 - 1.0));
     let block = results.finished("free_fall").and_then(acceleration);
     let metrics = vec![
         Metric::new(
