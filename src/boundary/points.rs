@@ -62,6 +62,25 @@ impl<const D: usize> WallPoints<D> {
         self.position.is_empty()
     }
 
+    /// Keeps the points whose position satisfies `wanted`.
+    pub fn retain(&mut self, wanted: impl Fn(&Vector<D>) -> bool) {
+        let keep: Vec<usize> = (0..self.len())
+            .filter(|&i| wanted(&self.position[i]))
+            .collect();
+        self.pick(&keep);
+    }
+
+    fn pick(&mut self, keep: &[usize]) {
+        fn pick<T: Copy>(field: &mut Vec<T>, keep: &[usize]) {
+            *field = keep.iter().map(|&i| field[i]).collect();
+        }
+        pick(&mut self.position, keep);
+        pick(&mut self.velocity, keep);
+        pick(&mut self.normal, keep);
+        pick(&mut self.weight, keep);
+        pick(&mut self.group, keep);
+    }
+
     /// Drops points closer than half a spacing to an earlier one (walls that overlap at corners).
     pub fn drop_doubles(&mut self, spacing: f64) {
         let reach = 0.5 * spacing;
@@ -88,14 +107,7 @@ impl<const D: usize> WallPoints<D> {
                 keep.push(i);
             }
         }
-        fn pick<T: Copy>(field: &mut Vec<T>, keep: &[usize]) {
-            *field = keep.iter().map(|&i| field[i]).collect();
-        }
-        pick(&mut self.position, &keep);
-        pick(&mut self.velocity, &keep);
-        pick(&mut self.normal, &keep);
-        pick(&mut self.weight, &keep);
-        pick(&mut self.group, &keep);
+        self.pick(&keep);
     }
 }
 

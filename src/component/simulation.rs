@@ -7,7 +7,7 @@ use super::sampling::Sampler;
 use super::snapshot;
 use super::{Error, MassLedger, ParticleView, Statistics};
 use crate::gauge::{Reading, View};
-use crate::math::{Vector, dot};
+use crate::math::{Geometry, Vector, dot};
 use crate::scene::{self, Dimension, Scene};
 use crate::solver::{Solver, StepInputs, three};
 use crate::state::{CellGrid, State};
@@ -26,7 +26,7 @@ struct Simulation<const D: usize> {
     devices: Devices,
     walls: usize,
     spacing: f64,
-    width: f64,
+    geometry: Geometry,
     lower: Vector<D>,
     upper: Vector<D>,
     periodic: [Option<(f64, f64)>; D],
@@ -38,7 +38,7 @@ struct Simulation<const D: usize> {
 /// [`Error::Setup`] if the scene cannot be built.
 pub(crate) fn build(scene: &Scene) -> Result<Box<dyn Engine>, Error> {
     match scene.dimension {
-        Dimension::Two => Ok(Box::new(Simulation::<2>::new(scene)?)),
+        Dimension::Two | Dimension::Axisymmetric => Ok(Box::new(Simulation::<2>::new(scene)?)),
         Dimension::Three => Ok(Box::new(Simulation::<3>::new(scene)?)),
     }
 }
@@ -58,7 +58,7 @@ impl<const D: usize> Simulation<D> {
             devices: Devices::default(),
             walls: scene.walls.len(),
             spacing: scene.numerics.spacing,
-            width: scene.domain.width,
+            geometry: scene::geometry(scene),
             lower,
             upper,
             periodic,
@@ -197,7 +197,7 @@ impl<const D: usize> Engine for Simulation<D> {
             solid: &solid,
             spacing: self.spacing,
             kernel: *self.solver.kernel(),
-            width: self.width,
+            geometry: self.geometry,
             lower: self.lower,
             upper: self.upper,
             periodic: self.periodic.map(|p| p.is_some()),

@@ -21,7 +21,7 @@ as a run without the break. Results do not depend on the number of threads.</li>
 <li>A refused call answers Error with a message in category <code>logStatusError</code> that says what was found and what
 is allowed; the instance goes on as before. After a failed step only reading, setting a state, reset and free are
 allowed.</li>
-<li>Discharges, forces and masses of planar scenes are for the scene's out-of-plane width. Look at the validity beside
+<li>Discharges, forces and masses of planar scenes are for the scene's out-of-plane width, those of axisymmetric scenes for whole rings. Look at the validity beside
 each gauge before you use its reading: 0 valid, 1 empty, 2 outside, 3 blocked.</li>
 <li>The scene is inside the library: no file is read at run time. <code>resources/scene.toml</code> is a copy to look
 at; changing it changes nothing. Pack a new FMU with <code>sandgate fmu CASE --fmi 2|3 -o FILE</code>.</li>

@@ -23,12 +23,11 @@ impl<const D: usize> PressureProbe<D> {
             return Reading::none(1, Validity::Blocked);
         }
         let (mut weights, mut sum) = (0.0, 0.0);
-        view.cells
-            .for_each_within(&self.at, view.kernel.support(), |j, _, r| {
-                let weight = view.volume(j) * view.kernel.w(r);
-                weights += weight;
-                sum += weight * view.pressure[j];
-            });
+        view.for_each_particle(&self.at, |j, r| {
+            let weight = view.volume(j) * view.kernel.w(r);
+            weights += weight;
+            sum += weight * view.pressure[j];
+        });
         if weights < DRY {
             return Reading::none(1, Validity::Empty);
         }

@@ -1,6 +1,7 @@
 //! What gauges see: particles, wall particles and the box they are in. Borrowed for one sampling.
 
 use crate::kernel::WendlandC2;
+use crate::math::Geometry;
 use crate::state::CellGrid;
 
 /// Particles and walls at one time. All slices have one entry a particle.
@@ -8,7 +9,7 @@ use crate::state::CellGrid;
 pub struct View<'a, const D: usize> {
     /// Positions [m].
     pub position: &'a [[f64; D]],
-    /// Masses [kg], for the whole width of a planar scene.
+    /// Masses [kg], for the whole width of a planar scene, of whole rings in an axisymmetric one.
     pub mass: &'a [f64],
     /// Bulk densities [kg/m^3].
     pub density: &'a [f64],
@@ -22,8 +23,8 @@ pub struct View<'a, const D: usize> {
     pub spacing: f64,
     /// The kernel of the simulation.
     pub kernel: WendlandC2<D>,
-    /// Out-of-plane width of planar scenes [m]; 1 in space.
-    pub width: f64,
+    /// What coordinates stand for.
+    pub geometry: Geometry,
     /// Lower corner of the domain [m].
     pub lower: [f64; D],
     /// Upper corner of the domain [m].
@@ -43,20 +44,44 @@ impl<const D: usize> View<'_, D> {
         })
     }
 
-    /// Volume of particle `i` [m^D].
+    /// Volume of particle `i` [m^D]: of rings the area of their section.
     #[must_use]
     pub fn volume(&self, i: usize) -> f64 {
-        self.mass[i] / (self.density[i] * self.width)
+        let least = Geometry::LEAST_RADIUS * self.spacing;
+        let across = self.geometry.length_across(&self.position[i], least);
+        self.mass[i] / (self.density[i] * across)
+    }
+
+    /// Calls `visit` with index, place [m] and distance [m] of all points of a grid within the kernel's support of a
+    /// place, then of the images of rings across the axis.
+    fn for_each_near(
+        &self,
+        cells: &CellGrid<D>,
+        at: &[f64; D],
+        mut visit: impl FnMut(usize, [f64; D], f64),
+    ) {
+        let support = self.kernel.support();
+        cells.for_each_within(at, support, &mut visit);
+        if self.geometry.is_axisymmetric() && at[0] < support {
+            let mirror = |mut x: [f64; D]| {
+                x[0] = -x[0];
+                x
+            };
+            cells.for_each_within(&mirror(*at), support, |j, x, r| visit(j, mirror(x), r));
+        }
+    }
+
+    /// Calls `visit` with index and distance [m] of every particle within the kernel's support of a place, a ring's
+    /// image across the axis included.
+    pub fn for_each_particle(&self, at: &[f64; D], mut visit: impl FnMut(usize, f64)) {
+        self.for_each_near(self.cells, at, |j, _, r| visit(j, r));
     }
 
     /// Shepard sum of the material, sum_j V_j W(|x - x_j|) [1].
     #[must_use]
     pub fn material_sum(&self, at: &[f64; D]) -> f64 {
         let mut sum = 0.0;
-        self.cells
-            .for_each_within(at, self.kernel.support(), |j, _, r| {
-                sum += self.volume(j) * self.kernel.w(r);
-            });
+        self.for_each_particle(at, |j, r| sum += self.volume(j) * self.kernel.w(r));
         sum
     }
 
@@ -65,15 +90,14 @@ impl<const D: usize> View<'_, D> {
     pub fn solid_sums(&self, at: &[f64; D], foot: &[f64; D], up: &[f64; D]) -> (f64, f64) {
         let volume = self.spacing.powi(D as i32);
         let (mut behind, mut before) = (0.0, 0.0);
-        self.solid
-            .for_each_within(at, self.kernel.support(), |_, x, r| {
-                let weight = volume * self.kernel.w(r);
-                if super::component(&x, foot, up) < 0.0 {
-                    behind += weight;
-                } else {
-                    before += weight;
-                }
-            });
+        self.for_each_near(self.solid, at, |_, x, r| {
+            let weight = volume * self.kernel.w(r);
+            if super::component(&x, foot, up) < 0.0 {
+                behind += weight;
+            } else {
+                before += weight;
+            }
+        });
         (behind, before)
     }
 
@@ -85,11 +109,10 @@ impl<const D: usize> View<'_, D> {
     pub fn is_covered(&self, at: &[f64; D]) -> bool {
         let volume = self.spacing.powi(D as i32);
         let (mut sum, mut nearest) = (0.0, f64::INFINITY);
-        self.solid
-            .for_each_within(at, self.kernel.support(), |_, _, r| {
-                sum += volume * self.kernel.w(r);
-                nearest = f64::min(nearest, r);
-            });
+        self.for_each_near(self.solid, at, |_, _, r| {
+            sum += volume * self.kernel.w(r);
+            nearest = f64::min(nearest, r);
+        });
         sum > 0.9 || nearest < 0.45 * self.spacing
     }
 }
@@ -170,7 +193,11 @@ pub(super) mod bed {
             let length = self.length();
             let periodic: [bool; D] = std::array::from_fn(|a| a != 1 && self.periodic);
             let periods = periodic.map(|p| p.then_some((0.0, length)));
-            let width = if D == 2 { 0.3 } else { 1.0 };
+            let geometry = if D == 2 {
+                Geometry::Planar { width: 0.3 }
+            } else {
+                Geometry::Space
+            };
             let count = self.position.len();
             let pressure: Vec<f64> = self
                 .position
@@ -181,14 +208,14 @@ pub(super) mod bed {
             let lower = std::array::from_fn(|a| if a == 1 { -0.05 } else { 0.0 });
             gauge(&View {
                 position: &self.position,
-                mass: &vec![1500.0 * width * self.spacing.powi(D as i32); count],
+                mass: &vec![1500.0 * geometry.width() * self.spacing.powi(D as i32); count],
                 density: &vec![1500.0; count],
                 pressure: &pressure,
                 cells: &CellGrid::build(&self.position, kernel.support(), &periods),
                 solid: &CellGrid::build(&self.solid, kernel.support(), &periods),
                 spacing: self.spacing,
                 kernel,
-                width,
+                geometry,
                 lower,
                 upper,
                 periodic,

@@ -21,6 +21,9 @@ pub enum Geometry {
 }
 
 impl Geometry {
+    /// Least radius over the spacing dp: a ring nearer to the axis has the length and hoop strain of one there [1].
+    pub const LEAST_RADIUS: f64 = 0.25;
+
     /// Whether particles are rings.
     #[inline(always)]
     #[must_use]

@@ -63,6 +63,7 @@ pub fn geometry(scene: &Scene) -> Geometry {
         Dimension::Two => Geometry::Planar {
             width: scene.domain.width,
         },
+        Dimension::Axisymmetric => Geometry::Axisymmetric,
         Dimension::Three => Geometry::Space,
     }
 }
@@ -88,10 +89,25 @@ fn periodic<const D: usize>(scene: &Scene) -> Result<Periodic<D>, String> {
     })
 }
 
-/// Mass of a particle, rounded to a multiple of a power of two so that sums of up to 2^28 particles are exact [kg].
-fn exact_mass(mass: f64) -> f64 {
-    let quantum = 2f64.powi(mass.log2().floor() as i32 - 24);
+/// Mass of a particle, rounded to a multiple of a power of two so that sums of up to 2^28 particles no heavier than
+/// `largest` are exact [kg].
+fn exact_mass(mass: f64, largest: f64) -> f64 {
+    let quantum = 2f64.powi(largest.log2().floor() as i32 - 24);
     (mass / quantum).round() * quantum
+}
+
+/// Mass of a particle of `density` at a place that stands for `cell` m^D of the section [kg]. Rings far from the axis
+/// are heavier than those near it: the heaviest that the domain has room for sets what masses are multiples of.
+fn particle_mass(scene: &Scene, place: &Point, density: f64, cell: f64) -> f64 {
+    let geometry = geometry(scene);
+    let length = |x: &Point| geometry.length_across(x, 0.0);
+    let mass = density * cell * length(place);
+    let largest = if geometry.is_axisymmetric() {
+        density * cell * length(&scene.domain.upper)
+    } else {
+        mass
+    };
+    exact_mass(mass, largest)
 }
 
 fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
@@ -102,7 +118,18 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
     };
     let mut id = 0;
     let up = up_axis(scene);
-    let jitter = scene.numerics.jitter * scene.numerics.spacing;
+    let jitter = scene.numerics.jitter;
+    let rings = scene.dimension == Dimension::Axisymmetric;
+    // Rings of half a spacing move half as far: the mass is that of the place, and the section's area follows from it.
+    let reach = |axis: usize, place: &Point| {
+        let dp = scene.numerics.spacing;
+        jitter
+            * if rings && axis == 0 {
+                dp.min(place[0])
+            } else {
+                dp
+            }
+    };
     for body in &scene.bodies {
         let material = &scene.materials[body.material].material;
         let lattice = lattice(
@@ -115,10 +142,9 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
         let bulk = flow
             .as_ref()
             .map_or(material.rest_density(), |f| f.loose_density);
-        let mass = exact_mass(bulk * lattice.cell_volume * scene.domain.width);
         for place in &lattice.points {
             let position: Vector<D> =
-                std::array::from_fn(|k| place[k] + jitter * random.symmetric());
+                std::array::from_fn(|k| place[k] + reach(k, place) * random.symmetric());
             let mut velocity: Vector<D> = narrow(&body.velocity);
             let mut density =
                 material.density_under(load_above(scene, place, up), scene.numerics.sound_speed);
@@ -128,6 +154,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
                 velocity = add(&velocity, &narrow(&here.velocity));
                 (density, shear_rate) = (here.density, here.shear_rate);
             }
+            let mass = particle_mass(scene, place, bulk, lattice.cell_volume);
             grains.push(id, body.material as u8, position, velocity, mass, density);
             if let Some(relaxed) = grains.relaxed_shear.last_mut() {
                 *relaxed = shear_rate;
@@ -256,6 +283,9 @@ fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D>
             }
         }
     }
+    if scene.dimension == Dimension::Axisymmetric {
+        points.retain(|x| x[0] > 0.0);
+    }
     points.drop_doubles(dp);
     for (n, gate) in scene.gates.iter().enumerate() {
         points
@@ -299,7 +329,9 @@ fn source<const D: usize>(scene: &Scene, inflow: &Inflow) -> Source<D> {
         (norm(&span) / dp).round().max(1.0) as usize
     };
     let clear = scale(0.5 * dp / norm(&velocity), &velocity);
+    let density = material.rest_density();
     let mut slots = Vec::new();
+    let mut masses = Vec::new();
     for i in 0..along {
         for m in 0..wide {
             let mut x = add(
@@ -310,14 +342,15 @@ fn source<const D: usize>(scene: &Scene, inflow: &Inflow) -> Source<D> {
                 x = add(&x, &scale((m as f64 + 0.5) / wide as f64, &span));
             }
             slots.push(x);
+            let place = std::array::from_fn(|k| if k < D { x[k] } else { 0.0 });
+            masses.push(particle_mass(scene, &place, density, dp.powi(D as i32)));
         }
     }
-    let density = material.rest_density();
     Source {
         slots,
+        masses,
         velocity,
         phase: inflow.material as u8,
-        particle_mass: exact_mass(density * dp.powi(D as i32) * scene.domain.width),
         density,
     }
 }

@@ -1,7 +1,8 @@
 //! The scene's types. Lengths in m, times in s, masses in kg, angles resolved to vectors.
 //!
 //! Points are `[x, y, z]`; planar scenes use x and y (y is up unless gravity says otherwise) and leave z at 0.
-//! Extensive values of a planar scene (mass, force, discharge) are for the scene's out-of-plane `width`.
+//! Extensive values of a planar scene (mass, force, discharge) are for the scene's out-of-plane `width`, those of an
+//! axisymmetric one for whole rings.
 
 use crate::material::Material;
 use crate::shape::Shape;
@@ -10,13 +11,26 @@ use crate::solver::Numerics;
 /// A point or vector; planar scenes leave the third component at 0. [m], [m/s] or [m/s^2]
 pub type Point = [f64; 3];
 
-/// Number of space dimensions of a scene.
+/// What the coordinates of a scene stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// Plane strain in x and y.
     Two,
+    /// x is the radius r >= 0, y the height along the axis of symmetry r = 0; particles are rings.
+    Axisymmetric,
     /// Full space.
     Three,
+}
+
+impl Dimension {
+    /// Number of coordinates, 2 or 3.
+    #[must_use]
+    pub fn axes(self) -> usize {
+        match self {
+            Dimension::Two | Dimension::Axisymmetric => 2,
+            Dimension::Three => 3,
+        }
+    }
 }
 
 /// A whole scene, checked: every value SI and in range, every name unique and known.
@@ -28,7 +42,7 @@ pub struct Scene {
     pub title: String,
     /// The text the scene was read from, byte for byte (embedded in FMUs, logs and fingerprints).
     pub source: String,
-    /// Space dimensions.
+    /// What coordinates stand for.
     pub dimension: Dimension,
     /// Extent, periodic sides, width, gravity.
     pub domain: Domain,
@@ -65,7 +79,7 @@ pub struct Domain {
     pub upper: Point,
     /// Which axes are periodic.
     pub periodic: [bool; 3],
-    /// Out-of-plane width of a planar scene [m]; 1 in space.
+    /// Out-of-plane width of a planar scene [m]; 1 otherwise.
     pub width: f64,
     /// Gravitational acceleration [m/s^2]; a tilted vector makes an inclined plane.
     pub gravity: Point,
@@ -362,10 +376,7 @@ pub struct LogSettings {
 
 /// The axis that gravity mostly points against, as a unit vector.
 pub(super) fn up(gravity: Point, dimension: Dimension) -> Point {
-    let last = match dimension {
-        Dimension::Two => 1,
-        Dimension::Three => 2,
-    };
+    let last = dimension.axes() - 1;
     // The last axis wins ties, so that a slope of 45 deg still has its bed along x.
     let steepest = (0..=last).rev().fold(last, |best, axis| {
         if gravity[axis].abs() > gravity[best].abs() {

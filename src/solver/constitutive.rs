@@ -42,7 +42,7 @@ impl<const D: usize> Solver<D> {
         Ok(())
     }
 
-    /// V = m / (rho width), areas in the plane.
+    /// V = m / (rho width): areas in the plane, volumes of rings and in space.
     pub(super) fn update_volumes(&mut self, mass: &[f64], density: &[f64]) {
         for (v, (m, rho)) in self.volume.iter_mut().zip(mass.iter().zip(density)) {
             *v = m / (rho * self.width);

@@ -10,12 +10,12 @@ use super::Solver;
 pub struct Source<const D: usize> {
     /// Where a row's particles appear [m].
     pub slots: Vec<Vector<D>>,
+    /// Mass of the particle of each slot [kg].
+    pub masses: Vec<f64>,
     /// Their velocity [m/s].
     pub velocity: Vector<D>,
     /// Index of the material.
     pub phase: u8,
-    /// Mass of one particle [kg].
-    pub particle_mass: f64,
     /// Density they come with [kg/m^3].
     pub density: f64,
 }
@@ -33,7 +33,7 @@ impl<const D: usize> Source<D> {
     /// Mass of a row [kg].
     #[must_use]
     pub fn row_mass(&self) -> f64 {
-        self.particle_mass * self.slots.len() as f64
+        self.masses.iter().fold(0.0, |sum, m| sum + m)
     }
 }
 
@@ -108,7 +108,7 @@ impl<const D: usize> Solver<D> {
             inflow.pending -= row;
             inflow.admitted += row;
             came = true;
-            for slot in &source.slots {
+            for (slot, mass) in source.slots.iter().zip(&source.masses) {
                 let jitter: Vector<D> = std::array::from_fn(|_| state.random.symmetric());
                 let x = add(
                     slot,
@@ -116,14 +116,9 @@ impl<const D: usize> Solver<D> {
                 );
                 let id = state.next_id;
                 state.next_id += 1;
-                state.grains.push(
-                    id,
-                    source.phase,
-                    x,
-                    source.velocity,
-                    source.particle_mass,
-                    source.density,
-                );
+                state
+                    .grains
+                    .push(id, source.phase, x, source.velocity, *mass, source.density);
             }
         }
         came
@@ -154,7 +149,7 @@ impl<const D: usize> Solver<D> {
                         continue;
                     }
                     let volume = self.volume[i];
-                    let vf = volume * weight * self.kernel.f(r);
+                    let vf = self.wall_volume(i, w, weight) * self.kernel.f(r);
                     let g = scale(vf, &x);
                     // On the particle: -2 p g + 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w), times V_i.
                     let projection = self.wall_projection(xi, w, state);

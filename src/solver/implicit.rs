@@ -180,12 +180,16 @@ impl<const D: usize> Solver<D> {
     fn solver_limit(&self, state: &State<D>, dt: f64) -> f64 {
         let mass = &state.grains.mass;
         let touched = self.lists.blocks.iter().any(|b| !b.wall_rows.is_empty());
-        let frame = if touched {
+        let mut frame = if touched {
             mean(&self.walls.velocity, &self.walls.weight)
         } else {
             let rows: Vec<Vector<D>> = self.prediction.iter().map(|p| p.velocity).collect();
             mean(&rows, mass)
         };
+        if self.geometry.is_axisymmetric() {
+            // The axis stands still.
+            frame[0] = 0.0;
+        }
         let fall = dt * self.gravity_norm;
         let scale2 = sum_rows(&self.workers, mass.len(), |i| {
             let d = sub(&self.prediction[i].velocity, &frame);
@@ -201,12 +205,14 @@ impl<const D: usize> Solver<D> {
         if self.lists.free_pieces == 0 {
             return;
         }
+        // Rings keep momentum along their axis only.
+        let first = usize::from(self.geometry.is_axisymmetric());
         let mut lost = vec![([0.0; D], 0.0); self.lists.free_pieces];
         for (i, piece) in self.lists.pieces.iter().enumerate() {
             let Some(piece) = piece else { continue };
             let m = state.grains.mass[i];
             let (momentum, mass) = &mut lost[*piece as usize];
-            for k in 0..D {
+            for k in first..D {
                 momentum[k] += m * (self.prediction[i].velocity[k] - velocity[i][k]);
             }
             *mass += m;
@@ -214,7 +220,7 @@ impl<const D: usize> Solver<D> {
         for (i, piece) in self.lists.pieces.iter().enumerate() {
             let Some(piece) = piece else { continue };
             let (momentum, mass) = &lost[*piece as usize];
-            for k in 0..D {
+            for k in first..D {
                 velocity[i][k] += momentum[k] / mass;
             }
         }

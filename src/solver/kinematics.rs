@@ -4,8 +4,7 @@
 //! Symbols: F = W'(r)/r <= 0, grad W_ij = F x_ij, x_ij = x_i - x_j, v_ij = v_i - v_j, V = m/rho.
 
 use crate::math::{
-    Geometry, Tensor, Vector, add_outer, determinant, dot, inverse, multiply, norm, scale, sub,
-    trace,
+    Tensor, Vector, add_outer, determinant, dot, inverse, multiply, norm, scale, sub, trace,
 };
 use crate::state::State;
 
@@ -44,6 +43,7 @@ impl<const D: usize> Solver<D> {
         let n = state.grains.len();
         self.volume.resize(n, 0.0);
         self.update_volumes(&state.grains.mass, &state.grains.swept_density);
+        self.update_rings(state);
         self.kinematics.resize(n, Kinematics::default());
         let mut kinematics = std::mem::take(&mut self.kinematics);
         let mut blocks = std::mem::take(&mut self.lists.blocks);
@@ -75,21 +75,27 @@ impl<const D: usize> Solver<D> {
                 pair_shear2: 0.0,
                 speed2: 0.0,
             };
-            self.fluid_row(state, i, block.row(row), &mut pairs, &mut sums);
+            let near = block.row(row);
+            if self.geometry.is_axisymmetric() {
+                self.fluid_row::<true>(state, i, near, &mut pairs, &mut sums);
+            } else {
+                self.fluid_row::<false>(state, i, near, &mut pairs, &mut sums);
+            }
             block.pair_ends.push(pairs.len() as u32);
             if !block.wall_row(row).is_empty()
                 && let Some(w) = self.wall_row(state, i, row, block.wall_row(row), &mut sums)
             {
                 wall_rows.push(w);
             }
-            *o = finish(self.geometry, &sums, 0.0);
+            *o = self.finish(&sums, i, &state.grains.velocity[i]);
         }
         block.pairs = pairs;
         block.wall_rows = wall_rows;
     }
 
+    /// Pairs and sums of a row; RINGS: particles are rings.
     #[inline(always)]
-    fn fluid_row(
+    fn fluid_row<const RINGS: bool>(
         &self,
         state: &State<D>,
         i: usize,
@@ -110,7 +116,10 @@ impl<const D: usize> Solver<D> {
                 continue;
             }
             let r = r2.sqrt();
-            let vf = self.volume[ju] * self.kernel.f(r);
+            let mut vf = self.volume[ju] * self.kernel.f(r);
+            if RINGS {
+                vf *= self.ring_share(i, ju);
+            }
             let g = scale(vf, &x);
             let v = sub(vi, &grains.velocity[ju]);
             add_outer(&mut sums.gradient, -1.0, &v, &g);
@@ -156,7 +165,7 @@ impl<const D: usize> Solver<D> {
                 continue;
             }
             any = true;
-            let vf = self.volume[i] * weight * self.kernel.f(r);
+            let vf = self.wall_volume(i, wall, weight) * self.kernel.f(r);
             let g = scale(vf, &x);
             let vw = self.walls.velocity[wall as usize];
             let projection = self.wall_projection(xi, wall, state);
@@ -206,6 +215,54 @@ impl<const D: usize> Solver<D> {
             sums.gradient[k][k] += share;
         }
         Some(w)
+    }
+
+    /// From the sums of row i, at velocity v, to what the rheology needs.
+    fn finish(&self, sums: &Row<D>, i: usize, v: &Vector<D>) -> Kinematics {
+        let hoop = self.hoop_rate(i, v);
+        let rate = |g: &Tensor<D>| {
+            self.geometry
+                .shear_rate(&self.geometry.strain_deviator(g, hoop))
+        };
+        let mut gradient = sums.gradient;
+        let mut kinematics = Kinematics {
+            divergence: trace(&gradient),
+            shear: 0.0,
+            correction: 1.0,
+            pair_scale: 1.0,
+            relative_speed: sums.speed2.sqrt(),
+        };
+        let mut pair_shear2 = sums.pair_shear2;
+        if self.geometry.is_axisymmetric() {
+            gradient[0][0] += self.axis_rate(i, v);
+            kinematics.divergence += hoop + self.rings[i].closing;
+            pair_shear2 += hoop * hoop;
+            if self.rings[i].axis != 0.0 {
+                // Its image comes as fast.
+                kinematics.relative_speed = kinematics.relative_speed.max(2.0 * v[0].abs());
+            }
+        }
+        kinematics.shear = rate(&gradient);
+        if kinematics.shear > 0.0 && determinant(&sums.moment) > 0.15 {
+            // M does without what `axis` stands for.
+            let corrected = rate(&multiply(&sums.gradient, &inverse(&sums.moment)));
+            kinematics.correction = (corrected / kinematics.shear).clamp(0.8, 3.0);
+        }
+        if pair_shear2 > 0.0 {
+            kinematics.pair_scale =
+                (kinematics.shear * kinematics.shear / pair_shear2).clamp(0.5, 2.0);
+        }
+        kinematics
+    }
+
+    /// Volume (area in the section) by which particle i sees a wall point of this weight.
+    #[inline(always)]
+    pub(super) fn wall_volume(&self, i: usize, wall: u32, weight: f64) -> f64 {
+        if self.geometry.is_axisymmetric() {
+            self.ring_wall_area(i, wall, weight)
+        } else {
+            self.volume[i] * weight
+        }
     }
 
     /// x_i - x_wall and its length, nearest image.
@@ -270,29 +327,5 @@ impl<const D: usize> WallRow<D> {
             }
         }
         f
-    }
-}
-
-/// From sums and the hoop strain rate (rings only) to what the rheology needs.
-fn finish<const D: usize>(geometry: Geometry, sums: &Row<D>, hoop: f64) -> Kinematics {
-    let rate = |g: &Tensor<D>| geometry.shear_rate(&geometry.strain_deviator(g, hoop));
-    let shear = rate(&sums.gradient);
-    let correction = if shear > 0.0 && determinant(&sums.moment) > 0.15 {
-        let corrected = rate(&multiply(&sums.gradient, &inverse(&sums.moment)));
-        (corrected / shear).clamp(0.8, 3.0)
-    } else {
-        1.0
-    };
-    let pair_scale = if sums.pair_shear2 > 0.0 {
-        (shear * shear / sums.pair_shear2).clamp(0.5, 2.0)
-    } else {
-        1.0
-    };
-    Kinematics {
-        divergence: trace(&sums.gradient),
-        shear,
-        correction,
-        pair_scale,
-        relative_speed: sums.speed2.sqrt(),
     }
 }

@@ -19,6 +19,9 @@ mod pair;
 mod paper_a;
 mod plastic;
 mod pressure;
+mod ring;
+#[cfg(test)]
+mod ring_tests;
 mod timestep;
 mod validity;
 mod viscous;
@@ -42,6 +45,7 @@ use implicit::Viscous;
 use kinematics::Kinematics;
 use lists::Lists;
 use pressure::Prediction;
+use ring::Ring;
 
 /// Skin of the neighbour lists over h [1].
 const SKIN: f64 = 0.3;
@@ -148,7 +152,10 @@ pub struct Solver<const D: usize> {
     workers: Arc<Workers>,
     lists: Lists<D>,
     kinematics: Vec<Kinematics>,
+    /// V = m/rho; in the plane for each metre of width.
     volume: Vec<f64>,
+    /// Empty unless particles are rings.
+    rings: Vec<Ring>,
     pressure: Vec<f64>,
     /// Pressure with bulk friction, what momentum feels [Pa]; empty unless a material has bulk friction.
     normal_pressure: Vec<f64>,
@@ -207,6 +214,7 @@ impl<const D: usize> Solver<D> {
             workers: Arc::new(Workers::new(threads)),
             kinematics: Vec::new(),
             volume: Vec::new(),
+            rings: Vec::new(),
             pressure: Vec::new(),
             normal_pressure: Vec::new(),
             viscosity: Vec::new(),
@@ -320,6 +328,17 @@ impl<const D: usize> Solver<D> {
                 grains.position[i][k] += dt * v[k];
             }
             grains.velocity[i] = v;
+            if self.geometry.is_axisymmetric() && grains.position[i][0] < 0.0 {
+                // The same ring, seen from the other side of the axis.
+                grains.position[i][0] *= -1.0;
+                grains.velocity[i][0] *= -1.0;
+                grains.viscous_acceleration[i][0] *= -1.0;
+                for tensors in [&mut grains.stress, &mut grains.plastic_rate] {
+                    if let Some(t) = tensors.get_mut(i) {
+                        (t[0][1], t[1][0]) = (-t[0][1], -t[1][0]);
+                    }
+                }
+            }
             grains.density[i] += dt * self.prediction[i].diffusion;
             if !v.iter().all(|c| c.is_finite()) {
                 return Err(self.not_finite(state, "velocity", |n| n != i));

@@ -121,6 +121,10 @@ impl<const D: usize> Solver<D> {
                 0.0
             };
         }
+        if self.geometry.is_axisymmetric() {
+            let ring = &self.rings[i];
+            force[0] += pi * (ring.hoop + ring.axis);
+        }
         let specific = self.specific_volume(state, i);
         let mut velocity = grains.velocity[i];
         for k in 0..D {

@@ -41,10 +41,11 @@ impl<const D: usize> Solver<D> {
                         }
                     }
                     let f = 2.0 * (1.0 - share) * eta;
-                    *t = self
+                    gradient[0][0] += self.axis_rate(i, vi);
+                    let e = self
                         .geometry
-                        .strain_deviator(&gradient, 0.0)
-                        .map(|r| scale(f, &r));
+                        .strain_deviator(&gradient, self.hoop_rate(i, vi));
+                    *t = e.map(|r| scale(f, &r));
                 }
             });
     }
@@ -107,6 +108,9 @@ impl<const D: usize> Solver<D> {
                 f[a] += s;
             }
         }
+        if self.geometry.is_axisymmetric() {
+            f[0] -= self.ring_drag(i, vi, ti, share);
+        }
         scale(self.width * self.volume[i], &f)
     }
 
@@ -126,6 +130,11 @@ impl<const D: usize> Solver<D> {
                         for c in 0..D {
                             b[r][c] += 2.0 * w.c[r][c];
                         }
+                    }
+                }
+                if self.geometry.is_axisymmetric() {
+                    for (row, b) in out.iter_mut().enumerate() {
+                        b[0][0] += self.ring_stiffness(first + row);
                     }
                 }
                 for (row, b) in out.iter_mut().enumerate() {

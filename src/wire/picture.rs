@@ -8,7 +8,7 @@ use super::foxglove::{
     Color, CubePrimitive, KeyValuePair, LinePrimitive, LineType, Point3, Pose, Quaternion,
     SceneEntity, SceneUpdate, TextPrimitive, Vector3,
 };
-use crate::scene::{Dimension, Gate, Gauge, GaugeKind, Point, Scene, Wall, WallGeometry};
+use crate::scene::{Gate, Gauge, GaugeKind, Point, Scene, Wall, WallGeometry};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3 as V3};
 
 const WALL: Color = color(0.35, 0.35, 0.38, 1.0);
@@ -51,7 +51,7 @@ struct Artist<'a> {
 
 impl Artist<'_> {
     fn planar(&self) -> bool {
-        self.scene.dimension == Dimension::Two
+        self.scene.dimension.axes() == 2
     }
 
     fn entity(&self, id: String, frame_id: String) -> SceneEntity {

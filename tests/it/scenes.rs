@@ -336,7 +336,7 @@ fn every_case_meets_the_schema_and_wrong_ones_do_not() {
         assert!(problems.is_empty(), "{}: {problems:#?}", path.display());
         for (from, to) in [
             ("spacing = ", "spacign = "),
-            ("dimension = ", "dimension = 1"),
+            ("dimension = ", "dimension = 1 # "),
             ("law = \"", "law = \"no_"),
             ("[run]", "[run]\nuntill = 3"),
             ("name = ", "nome = "),

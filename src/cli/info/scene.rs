@@ -11,6 +11,7 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
     let mut text = format!("{}: {}\n", scene.name, scene.title);
     let width = match scene.dimension {
         Dimension::Two => format!("planar, {} m wide", scene.domain.width),
+        Dimension::Axisymmetric => "rings about the axis x = 0".to_owned(),
         Dimension::Three => "in space".to_owned(),
     };
     text.push_str(&format!(
@@ -154,7 +155,8 @@ fn left_out(scene: &Scene) -> Vec<&'static str> {
     let domain = &scene.domain;
     let numerics = &scene.numerics;
     let unused = [
-        (scene.dimension == Dimension::Two, "the third dimension"),
+        (scene.dimension.axes() == 2, "the third dimension"),
+        (scene.dimension != Dimension::Axisymmetric, "hoop strain"),
         (scene.materials.len() < 2, "further phases (one material)"),
         (
             scene.materials.iter().all(|m| m.material.cohesion == 0.0),

@@ -17,7 +17,8 @@ An input is held over a communication step. All outputs are sampled once, at the
 first), so reading them is cheap and never changes anything. Gates and inflows start from the scene's own start values
 and move only in steps. A reading whose `validity` is not 0 is 0.
 
-Extensive values of a planar scene (mass, force, discharge) are for the scene's out-of-plane width.
+Extensive values of a planar scene (mass, force, discharge) are for the scene's out-of-plane width, those of an
+axisymmetric scene for whole rings (there x is the radius; force_x is the sum of radial forces around the ring).
 ";
 
 /// The text of docs/variables.md for these scenes.

@@ -4,7 +4,7 @@
 //! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals.
 
 use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable};
-use crate::scene::{Dimension, Gate, Gauge, GaugeKind, Inflow, Outflow, Scene};
+use crate::scene::{Gate, Gauge, GaugeKind, Inflow, Outflow, Scene};
 
 /// Where a row's value comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -296,11 +296,7 @@ fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
             ),
         ],
         GaugeKind::Force { .. } => {
-            let axes = if scene.dimension == Dimension::Two {
-                2
-            } else {
-                3
-            };
+            let axes = scene.dimension.axes();
             let force = |(k, axis): (usize, &str)| {
                 let text = format!("force of the material along {axis}, mean over the last step,");
                 reading(&format!("force_{axis}"), "N", k, &text)
@@ -346,12 +342,7 @@ fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
 
 /// Millimetres for scenes smaller than a metre.
 fn length_display(scene: &Scene) -> Option<(&'static str, f64)> {
-    let axes = if scene.dimension == Dimension::Two {
-        2
-    } else {
-        3
-    };
-    let extent = (0..axes)
+    let extent = (0..scene.dimension.axes())
         .map(|a| scene.domain.upper[a] - scene.domain.lower[a])
         .fold(0.0, f64::max);
     (extent <= 1.0).then_some(("mm", 1000.0))

@@ -102,9 +102,9 @@ impl Lift<'_> {
         if self.planar() {
             self.problems.report(
                 &at.place,
-                "a column in a planar scene",
-                "box or polygon, because dimension = 2",
-                "use a box, or set dimension = 3",
+                format!("a column in {}", self.kind()),
+                format!("box or polygon, because {}", self.dimension_key()),
+                "use a box (in an axisymmetric scene one from r = 0 is a column), or set dimension = 3",
             );
             return None;
         }

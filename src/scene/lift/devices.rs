@@ -34,7 +34,11 @@ impl Lift<'_> {
         }
         let flux = self.check_inflow_direction(raw, from, to, span, velocity?)?;
         let density = Self::rest_density(materials, material?)?;
-        let width = self.domain.as_ref()?.width;
+        let width = if self.axisymmetric() {
+            std::f64::consts::PI * (from[0] + to[0])
+        } else {
+            self.domain.as_ref()?.width
+        };
         let inflow = Inflow {
             name: entry.name.clone(),
             material: material?,

@@ -10,6 +10,9 @@ impl Lift<'_> {
         let corners = self.corners(raw.lower.as_ref(), raw.upper.as_ref());
         let gravity = self.gravity(raw);
         let width = self.width(raw);
+        if self.axisymmetric() {
+            self.check_axis(raw);
+        }
         let (lower, upper) = corners?;
         let periodic = self.periodic(raw, lower, upper);
         Some(Domain {
@@ -21,18 +24,65 @@ impl Lift<'_> {
         })
     }
 
+    /// Nothing lies at r < 0, gravity acts along the axis, and a radius does not repeat itself.
+    fn check_axis(&mut self, raw: &RawDomain) {
+        if let Some(lower) = &raw.lower
+            && let Some(&radius) = lower.value.values.first()
+            && radius < 0.0
+        {
+            self.problems.report(
+                &lower.place,
+                format!("x = {radius} m"),
+                "x >= 0: in axisymmetric scenes x is the radius",
+                "begin the domain at the axis, x = 0",
+            );
+        }
+        if let Some(slope) = &raw.slope {
+            self.problems.report(
+                &slope.place,
+                "slope in an axisymmetric scene",
+                "gravity along the axis of symmetry",
+                "delete slope, or set dimension = 2",
+            );
+        }
+        if let Some(gravity) = &raw.gravity
+            && let Gravity::Vector(vector) = &gravity.value
+            && vector.values.first().is_some_and(|&g| g != 0.0)
+        {
+            self.problems.report(
+                &gravity.place,
+                "gravity across the axis of symmetry",
+                "a vector [0, y], along the axis",
+                "write gravity = \"9.81 m/s^2\"",
+            );
+        }
+        for axis in raw.periodic.iter().flat_map(|list| &list.value.0) {
+            if axis.value == Axis::X {
+                self.problems.report(
+                    &axis.place,
+                    "\"x\", the radius, in an axisymmetric scene",
+                    "\"y\"",
+                    "delete it",
+                );
+            }
+        }
+    }
+
     /// Width belongs to planar scenes.
     fn width(&mut self, raw: &RawDomain) -> Option<f64> {
         let width = raw.width.as_ref()?;
-        if !self.planar() && raw.given.contains(&"width") {
+        if self.dimension == Dimension::Two {
+            return Some(width.value.0);
+        }
+        if raw.given.contains(&"width") {
             self.problems.report(
                 &width.place,
-                "width in a scene with dimension = 3",
-                "width only in planar scenes",
-                "delete it",
+                format!("width in a scene with {}", self.dimension_key()),
+                "width only in planar scenes, where dimension = 2",
+                "delete it; axisymmetric scenes hold whole rings",
             );
         }
-        Some(width.value.0)
+        Some(1.0)
     }
 
     /// Size and slope, or a vector.
@@ -43,7 +93,7 @@ impl Lift<'_> {
                 let slope = raw.slope.as_ref().map_or(0.0, |s| s.value.0);
                 let (sin, cos) = slope.sin_cos();
                 Some(match self.dimension {
-                    Dimension::Two => [size * sin, -size * cos, 0.0],
+                    Dimension::Two | Dimension::Axisymmetric => [size * sin, -size * cos, 0.0],
                     Dimension::Three => [size * sin, 0.0, -size * cos],
                 })
             }
@@ -81,7 +131,7 @@ impl Lift<'_> {
             if axis >= self.axes() {
                 self.problems.report(
                     &at.place,
-                    "\"z\" in a planar scene",
+                    format!("\"z\" in {}", self.kind()),
                     "\"x\", \"y\"",
                     "delete it, or set dimension = 3",
                 );

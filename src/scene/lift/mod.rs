@@ -17,7 +17,9 @@ mod profile;
 mod run;
 mod walls;
 
-use super::raw::{At, Coordinates, Entry, Named, Place, Problems, RawScene, nearest};
+use super::raw::{
+    At, Coordinates, DimensionWord, Entry, Named, Place, Problems, RawScene, nearest,
+};
 use super::types::{Dimension, Domain, NamedMaterial, Point, Scene};
 use geometry::Region;
 
@@ -85,8 +87,9 @@ const TOUCH: f64 = 1e-4;
 
 impl<'r> Lift<'r> {
     fn new(raw: &'r RawScene, problems: &'r mut Problems) -> Self {
-        let dimension = match raw.dimension.as_ref().map(|d| d.value.0) {
-            Some(3) => Dimension::Three,
+        let dimension = match raw.dimension.as_ref().map(|d| d.value) {
+            Some(DimensionWord::Three) => Dimension::Three,
+            Some(DimensionWord::Axisymmetric) => Dimension::Axisymmetric,
             _ => Dimension::Two,
         };
         let spacing = raw.numerics.as_ref().and_then(|n| n.value.spacing.as_ref());
@@ -106,13 +109,36 @@ impl<'r> Lift<'r> {
         lift
     }
 
+    /// Whether the scene is drawn in a plane, that of an axisymmetric one included.
     fn planar(&self) -> bool {
-        self.dimension == Dimension::Two
+        self.axes() == 2
+    }
+
+    fn axisymmetric(&self) -> bool {
+        self.dimension == Dimension::Axisymmetric
     }
 
     /// Number of axes.
     fn axes(&self) -> usize {
-        if self.planar() { 2 } else { 3 }
+        self.dimension.axes()
+    }
+
+    /// "a planar scene", for messages.
+    fn kind(&self) -> &'static str {
+        match self.dimension {
+            Dimension::Two => "a planar scene",
+            Dimension::Three => "a scene in space",
+            Dimension::Axisymmetric => "an axisymmetric scene",
+        }
+    }
+
+    /// The key `dimension` as it stands in the file.
+    fn dimension_key(&self) -> &'static str {
+        match self.dimension {
+            Dimension::Two => "dimension = 2",
+            Dimension::Three => "dimension = 3",
+            Dimension::Axisymmetric => "dimension = \"axisymmetric\"",
+        }
     }
 
     fn axis_name(axis: usize) -> &'static str {
@@ -140,12 +166,12 @@ impl<'r> Lift<'r> {
         if values.len() != self.axes() {
             let (allowed, remedy) = if self.planar() {
                 (
-                    "2 values, [x, y], because dimension = 2",
+                    format!("2 values, [x, y], because {}", self.dimension_key()),
                     "delete the third value, or set dimension = 3",
                 )
             } else {
                 (
-                    "3 values, [x, y, z], because dimension = 3",
+                    "3 values, [x, y, z], because dimension = 3".to_owned(),
                     "add the third value, or set dimension = 2",
                 )
             };
@@ -212,8 +238,8 @@ impl<'r> Lift<'r> {
             (Some(span), true) => {
                 self.problems.report(
                     &span.place,
-                    "span in a planar scene",
-                    "span only where dimension = 3; the plane's depth is domain.width",
+                    format!("span in {}", self.kind()),
+                    "span only where dimension = 3; a plane's depth is domain.width, a ring's 2 pi x",
                     "delete it",
                 );
                 None

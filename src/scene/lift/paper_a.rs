@@ -66,6 +66,14 @@ impl Lift<'_> {
         match word {
             SchemeWord::Implicit => Some(Scheme::Implicit),
             SchemeWord::PaperA => {
+                if self.axisymmetric() {
+                    self.problems.report(
+                        &raw.scheme.as_ref()?.place,
+                        "\"paper_a\" in an axisymmetric scene",
+                        "\"implicit\", the only scheme that knows hoop strain",
+                        "leave scheme out, or set dimension = 2",
+                    );
+                }
                 self.check_paper_a(materials);
                 self.paper_a(raw, table, materials).map(Scheme::PaperA)
             }

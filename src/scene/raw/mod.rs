@@ -4,12 +4,14 @@
 //! these tables into the typed scene. Rules that concern more than one key stand there, not here.
 
 mod declare;
+mod dimension;
 mod groups;
 mod range;
 mod read;
 mod sections;
 mod values;
 
+pub(super) use dimension::DimensionWord;
 pub(super) use groups::{Coordinates, Entry, Gravity, List, Named, SeriesPoint};
 pub(super) use read::{At, Place, Problems, nearest, read_document, syntax_place};
 pub(super) use sections::*;

@@ -9,8 +9,8 @@ table! {
         required name: Name;
         /// One line for people.
         optional title: Text, default "";
-        /// Number of space dimensions: 2 (plane strain, x and y) or 3.
-        optional dimension: Whole, in Range::within(2.0, 3.0), default 2;
+        /// What coordinates stand for: 2 (plane strain, x and y), 3, or "axisymmetric": x is the radius r >= 0, y the height along the axis of symmetry r = 0; masses, forces and discharges are for whole rings.
+        optional dimension: DimensionWord, default 2;
         /// Extent, periodic sides, width and gravity.
         required domain: RawDomain;
         /// Resolution and every numerical choice.
@@ -47,11 +47,11 @@ table! {
         required upper: Coordinates<Length>;
         /// Axes along which the domain repeats itself.
         optional periodic: List<Axis>;
-        /// Out-of-plane width of a planar scene: masses, forces and discharges are for this width.
+        /// Out-of-plane width of a planar scene: masses, forces and discharges are for this width. Not where dimension is 3 or "axisymmetric".
         optional width: Length, in Range::above(0.0), default "1 m";
         /// Gravitational acceleration: its size, downwards along the last axis, or a vector.
         optional gravity: Gravity, default "9.81 m/s^2";
-        /// Slope of the bed: turns gravity towards +x, so that a bed along x is an inclined plane. Not with a gravity vector.
+        /// Slope of the bed: turns gravity towards +x, so that a bed along x is an inclined plane. Not with a gravity vector, nor in axisymmetric scenes.
         optional slope: Angle, in Range::within(-1.5, 1.5);
     }
 }

@@ -5,10 +5,11 @@ use sandgate::scene::{self, Scene};
 use sandgate::solver::{PaperA, Scheme, Solver, StepInputs};
 use sandgate::state::State;
 
-const CASES: [&str; 6] = [
+const CASES: [&str; 7] = [
     "chute_inflow",
     "column_collapse",
     "column_collapse_3d",
+    "column_collapse_axisymmetric",
     "hydrostatic",
     "inclined_plane",
     "silo_gate",
