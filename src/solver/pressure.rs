@@ -123,7 +123,7 @@ impl<const D: usize> Solver<D> {
         }
         if self.geometry.is_axisymmetric() {
             let ring = &self.rings[i];
-            force[0] += pi * (ring.hoop + ring.axis);
+            force[0] += ni * (ring.hoop + ring.axis);
         }
         let specific = self.specific_volume(state, i);
         let mut velocity = grains.velocity[i];
