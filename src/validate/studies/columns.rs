@@ -1,5 +1,6 @@
 //! `columns`: the six columns of [A] Table 3 in the plane, default scheme, five seeds each.
 
+pub(super) mod axisymmetric;
 mod figures;
 pub(super) mod paper_a;
 
@@ -94,19 +95,30 @@ impl Column {
         if a < 1.7 { 1.24 * a } else { 1.6 * a.sqrt() }
     }
 
+    /// Room for a run-out a quarter beyond the largest published planar one [m].
+    fn reach(&self, spacing: f64) -> f64 {
+        R0 * (1.0 + 1.25 * self.planar_band().1) + 10.0 * spacing
+    }
+
+    /// Times of the pictures, of the first seed only [s].
+    fn pictures(&self, seed: u32) -> Vec<f64> {
+        let times = PICTURES.iter().filter(|_| seed == 1);
+        times.map(|t| t * self.fall()).collect()
+    }
+
+    /// When run-outs are taken: twice the stopping time [s].
+    fn twice_stopping(&self) -> f64 {
+        2.0 * STOPPING * self.fall()
+    }
+
     fn member(&self, name: String, seed: u32, spacing: f64, until: f64) -> Result<Member, String> {
-        // Room for a run-out a quarter beyond the largest published one.
-        let reach = R0 * (1.0 + 1.25 * self.planar_band().1) + 10.0 * spacing;
+        let reach = self.reach(spacing);
         let text = scene([R0, self.height], spacing, reach)?
             .with("numerics.seed", i64::from(seed))
             .with("run.step", self.fall() / 20.0)
             .with("run.until", until)
             .text()?;
-        let pictures = if seed == 1 {
-            PICTURES.map(|t| t * self.fall()).to_vec()
-        } else {
-            Vec::new()
-        };
+        let pictures = self.pictures(seed);
         Ok(Member::new(name, text, &SERIES, pictures))
     }
 }
@@ -148,23 +160,21 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
     Ok(members)
 }
 
-/// Front over time, mean of both sides [m].
+/// Front over time, mean of the sides that were kept [m].
 pub(super) fn front(recording: &Recording) -> Vec<(f64, f64)> {
-    let (left, right) = (
-        recording.curve("gauge.front_left.front"),
-        recording.curve("gauge.front_right.front"),
-    );
-    left.iter()
-        .zip(&right)
-        .map(|(l, r)| (l.0, 0.5 * (l.1 + r.1)))
-        .collect()
+    let right = recording.curve("gauge.front_right.front");
+    let left = recording.curve("gauge.front_left.front");
+    let left = if left.is_empty() { &right } else { &left };
+    let pairs = left.iter().zip(&right);
+    pairs.map(|(l, r)| (l.0, 0.5 * (l.1 + r.1))).collect()
 }
 
-/// Run-out at a time [s].
+/// Run-out at the communication point nearest to a time [s].
 fn run_out(recording: &Recording, time: f64) -> Option<f64> {
-    let [left, right] =
-        ["gauge.front_left.front", "gauge.front_right.front"].map(|g| recording.at(g, time));
-    Some((0.5 * (left? + right?) - R0) / R0)
+    let far = |p: &(f64, f64)| (p.0 - time).abs();
+    let front = front(recording);
+    let nearest = front.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
+    Some((nearest.1 - R0) / R0)
 }
 
 /// What the seeds of one column gave.
@@ -178,7 +188,7 @@ struct Seeds {
 fn seeds(results: &Results, column: &Column, kind: &str) -> Seeds {
     let prefix = column.name(kind, 0);
     let prefix = prefix.trim_end_matches('0');
-    let twice = 2.0 * STOPPING * column.fall();
+    let twice = column.twice_stopping();
     let mut seeds = Seeds {
         run_outs: Vec::new(),
         late: Vec::new(),
@@ -213,9 +223,9 @@ fn analyse(results: &Results) -> Result<Report, String> {
     }
     report.metrics.push(convergence(results));
     report.tables.push(other_laws(results));
-    report
-        .figures
-        .push(figures::fronts(results, &|c| c.name("", 1))?);
+    let laws = COLUMNS.iter().map(|c| (c, c.name("", 1), c.planar_band()));
+    let fronts = figures::fronts(results, &laws.collect::<Vec<_>>())?;
+    report.figures.push(fronts);
     for column in &COLUMNS {
         report
             .figures
@@ -311,5 +321,40 @@ fn other_laws(results: &Results) -> Table {
         title: "Heights and stopping times, means of seeds, beside published laws".to_owned(),
         head: head.map(str::to_owned).to_vec(),
         rows: rows.collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn run_outs_of_known_fronts() {
+        let mut recording = Recording::empty("key".to_owned());
+        recording.time = vec![0.0, 1.0, 2.0];
+        let column = |values: [f64; 3]| values.map(|v| vec![v * R0]).to_vec();
+        let right = column([1.0, 2.0, 3.0]);
+        recording
+            .series
+            .insert("gauge.front_right.front".to_owned(), right);
+        // One side alone, as in axisymmetric runs, and both.
+        assert!((run_out(&recording, 1.1).unwrap() - 1.0).abs() < 1e-12);
+        let left = column([1.0, 1.5, 2.0]);
+        recording
+            .series
+            .insert("gauge.front_left.front".to_owned(), left);
+        assert!((run_out(&recording, 9.0).unwrap() - 1.5).abs() < 1e-12);
+        assert_eq!(run_out(&Recording::empty("key".to_owned()), 1.0), None);
+    }
+
+    #[test]
+    fn laws_are_the_published_ones() {
+        assert!((COLUMNS[2].axisymmetric() - 1.116).abs() < 1e-12);
+        assert!((COLUMNS[5].axisymmetric() - 2.771).abs() < 1e-3);
+        let (low, high) = COLUMNS[2].planar_band();
+        assert!((low - 1.08).abs() < 1e-12 && (high - 1.62).abs() < 1e-12);
+        for column in COLUMNS {
+            assert!((column.height / R0 / column.aspect - 1.0).abs() < 0.01);
+        }
     }
 }

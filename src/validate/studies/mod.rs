@@ -10,9 +10,10 @@ mod silo;
 use super::Study;
 
 /// All studies, in the order in which they are listed and run.
-pub const ALL: [Study; 7] = [
+pub const ALL: [Study; 8] = [
     incline::STUDY,
     columns::STUDY,
+    columns::axisymmetric::STUDY,
     columns::paper_a::STUDY,
     contact::STUDY,
     rest::STUDY,

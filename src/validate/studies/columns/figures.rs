@@ -1,40 +1,30 @@
 //! Front histories and pictures of columns.
 
-use super::{COLUMNS, Column, GRAVITY, R0, front};
+use super::{Column, GRAVITY, R0, front};
 use crate::validate::chart::{Chart, Curve, Look};
 use crate::validate::picture::{Panel, Picture};
 use crate::validate::report::number;
-use crate::validate::{Figure, Recording, Results, Snapshot};
+use crate::validate::{Figure, Results, Snapshot};
 
-/// Front histories in the manner of [A] Fig. 10; `name` is that of a column's member.
+/// Front histories in the manner of [A] Fig. 10: columns, the member drawn of each, and the ends of a law's band.
 pub(super) fn fronts(
     results: &Results,
-    name: &dyn Fn(&Column) -> String,
+    laws: &[(&Column, String, (f64, f64))],
 ) -> Result<Figure, String> {
     let mut curves = Vec::new();
-    for (colour, column) in COLUMNS.iter().enumerate() {
-        let Some(recording) = results.finished(&name(column)) else {
+    for (colour, (column, name, (low, high))) in laws.iter().enumerate() {
+        let Some(recording) = results.finished(name) else {
             continue;
         };
         let points = front(recording)
             .into_iter()
             .map(|(t, x)| (t / column.fall(), x / R0));
         let points: Vec<_> = points.filter(|p| p.0 <= 10.0).collect();
-        curves.push(Curve::new(
-            format!("a = {:.2}", column.aspect),
-            points,
-            Look::Line,
-            colour,
-        ));
-        let (low, high) = column.planar_band();
-        let end = points_end(recording, column);
-        let law = [low, high].map(|r| (end, 1.0 + r)).to_vec();
-        curves.push(Curve::new(
-            format!("a = {:.2}, planar law", column.aspect),
-            law,
-            Look::Dots,
-            colour,
-        ));
+        let end = points.last().map_or(10.0, |p| p.0);
+        let title = format!("a = {:.2}", column.aspect);
+        curves.push(Curve::new(title.clone(), points, Look::Line, colour));
+        let law = [*low, *high].map(|r| (end, 1.0 + r)).to_vec();
+        curves.push(Curve::new(format!("{title}, law"), law, Look::Dots, colour));
     }
     let chart = Chart {
         x: "t / sqrt(H0/g)".to_owned(),
@@ -43,16 +33,11 @@ pub(super) fn fronts(
     };
     Ok(Figure {
         name: "fronts".to_owned(),
-        caption: "Front over time (as [A] Fig. 10); dots: the ends of the planar law's band."
-            .to_owned(),
+        caption:
+            "Front over time (as [A] Fig. 10); dots: the law's run-out, or the ends of its band."
+                .to_owned(),
         svg: chart.svg()?,
     })
-}
-
-/// Where the laws are drawn: at the end of the curve, over sqrt(H0/g).
-fn points_end(recording: &Recording, column: &Column) -> f64 {
-    let end = recording.time.last().map_or(10.0, |t| t / column.fall());
-    end.min(10.0)
 }
 
 /// Particles of one member, as [A] Figs. 11 and 12.
@@ -71,11 +56,14 @@ pub(super) fn pictures(results: &Results, column: &Column, name: &str) -> Option
             .map(|(x, v)| [x[0], x[1], v[0].hypot(v[1])])
             .collect(),
     };
+    let left = recording.series.contains_key("gauge.front_left.front");
+    let sides = if left { 2.0 } else { 1.0 };
     let picture = Picture {
-        lower: [-reach, 0.0],
+        // Rings have no left side.
+        lower: [if left { -reach } else { 0.0 }, 0.0],
         upper: [reach, 1.05 * column.height],
         // Of the run, which may be a coarse one.
-        spacing: (2.0 * R0 * column.height / recording.particles.max(1) as f64).sqrt(),
+        spacing: (sides * R0 * column.height / recording.particles.max(1) as f64).sqrt(),
         most: (GRAVITY * column.height).sqrt(),
         label: "speed [m/s]".to_owned(),
         panels: recording.snapshots.iter().map(panel).collect(),

@@ -74,7 +74,12 @@ fn analyse(results: &Results) -> Result<Report, String> {
             .figures
             .extend(figures::pictures(results, column, &name(column)));
     }
-    report.figures.insert(0, figures::fronts(results, &name)?);
+    let laws = COLUMNS.iter().map(|c| {
+        let law = c.axisymmetric();
+        (c, name(c), (law, law))
+    });
+    let fronts = figures::fronts(results, &laws.collect::<Vec<_>>())?;
+    report.figures.insert(0, fronts);
     Ok(report)
 }
 
