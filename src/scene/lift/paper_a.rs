@@ -17,6 +17,8 @@ type Key<'r> = (&'static str, Option<&'r Place>);
 /// Keys of [numerics] that only the default scheme uses.
 fn default_only(raw: &RawNumerics) -> Vec<Key<'_>> {
     vec![
+        ("yield", place(&raw.r#yield)),
+        ("yield_iterations", place(&raw.yield_iterations)),
         ("cap_time", place(&raw.cap_time)),
         ("density_diffusion", place(&raw.density_diffusion)),
         ("diffusion_gate_time", place(&raw.diffusion_gate_time)),
