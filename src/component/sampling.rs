@@ -91,26 +91,51 @@ impl<const D: usize> Sampler<D> {
 
     /// Readings of all gauges; `step` is the length of the last communication step [s], 0 before the first.
     pub(crate) fn sample(&self, view: &View<D>, devices: &Devices, step: f64) -> Vec<Reading> {
-        let over_step = |value: f64| if step > 0.0 { value / step } else { 0.0 };
         let read = |gauge: &Kind<D>| match gauge {
             Kind::Field(field) => gauge::sample(field, view),
             Kind::Discharge { section, .. } if view.is_outside(&section.centre()) => {
                 Reading::none(2, Validity::Outside)
             }
-            Kind::Discharge { section, before } => {
-                let mass = section.mass();
-                Reading::valid(vec![over_step(mass - before), mass])
-            }
-            Kind::Force(target) => {
-                let impulse = match target {
-                    ForceTarget::Wall(i) => devices.wall_impulse[*i],
-                    ForceTarget::Gate(i) => devices.gates[*i].impulse,
-                };
-                Reading::valid(impulse[..D].iter().map(|i| over_step(*i)).collect())
-            }
+            Kind::Discharge { section, before } => discharge(section, *before, step),
+            Kind::Force(target) => force::<D>(*target, devices, step),
         };
         self.gauges.iter().map(read).collect()
     }
+
+    /// As [`Sampler::sample`] of particles that have not moved since `still` was sampled.
+    pub(crate) fn sample_still(
+        &self,
+        still: &[Reading],
+        devices: &Devices,
+        step: f64,
+    ) -> Vec<Reading> {
+        let read = |(gauge, before): (&Kind<D>, &Reading)| match gauge {
+            Kind::Field(_) => before.clone(),
+            _ if before.validity == Validity::Outside => before.clone(),
+            Kind::Discharge { section, before } => discharge(section, *before, step),
+            Kind::Force(target) => force::<D>(*target, devices, step),
+        };
+        self.gauges.iter().zip(still).map(read).collect()
+    }
+}
+
+/// Rate over the last step and mass since the start.
+fn discharge<const D: usize>(section: &Crossing<D>, before: f64, step: f64) -> Reading {
+    let mass = section.mass();
+    Reading::valid(vec![over_step(mass - before, step), mass])
+}
+
+/// Mean force over the last step.
+fn force<const D: usize>(target: ForceTarget, devices: &Devices, step: f64) -> Reading {
+    let impulse = match target {
+        ForceTarget::Wall(i) => devices.wall_impulse[i],
+        ForceTarget::Gate(i) => devices.gates[i].impulse,
+    };
+    Reading::valid(impulse[..D].iter().map(|i| over_step(*i, step)).collect())
+}
+
+fn over_step(value: f64, step: f64) -> f64 {
+    if step > 0.0 { value / step } else { 0.0 }
 }
 
 /// The gauge of one row of the scene.

@@ -1,5 +1,7 @@
 //! State, solver and gauges of a scene in D dimensions: the one implementation of [`Engine`].
 
+use std::sync::OnceLock;
+
 use serde::{Deserialize, Serialize};
 
 use super::engine::{Advance, Devices, Engine, GateState, InflowState, Inputs, SolverError};
@@ -23,6 +25,8 @@ struct Simulation<const D: usize> {
     state: State<D>,
     solver: Solver<D>,
     sampler: Sampler<D>,
+    /// Readings of a scene that sleeps: they do not change until it wakes.
+    still: OnceLock<Vec<Reading>>,
     devices: Devices,
     walls: usize,
     spacing: f64,
@@ -55,6 +59,7 @@ impl<const D: usize> Simulation<D> {
             state,
             solver,
             sampler: Sampler::new(scene),
+            still: OnceLock::new(),
             devices: Devices::default(),
             walls: scene.walls.len(),
             spacing: scene.numerics.spacing,
@@ -153,6 +158,7 @@ impl<const D: usize> Simulation<D> {
 impl<const D: usize> Engine for Simulation<D> {
     fn advance(&mut self, start: f64, end: f64, inputs: &Inputs) -> Result<Advance, SolverError> {
         self.sampler.begin_step();
+        let slept = self.state.rest.asleep;
         for impulse in &mut self.state.impulse {
             *impulse = [0.0; D];
         }
@@ -164,6 +170,9 @@ impl<const D: usize> Engine for Simulation<D> {
                 time: self.state.time,
                 what: e.to_string(),
             })?;
+        if !(slept && self.state.rest.asleep) {
+            self.still = OnceLock::new();
+        }
         self.refresh_devices();
         Ok(report)
     }
@@ -173,6 +182,9 @@ impl<const D: usize> Engine for Simulation<D> {
     }
 
     fn sample(&self, step: f64) -> Vec<Reading> {
+        if let Some(still) = self.still.get() {
+            return self.sampler.sample_still(still, &self.devices, step);
+        }
         let grains = &self.state.grains;
         let walls = self.solver.walls();
         let solid: Vec<Vector<D>> = walls
@@ -202,7 +214,11 @@ impl<const D: usize> Engine for Simulation<D> {
             upper: self.upper,
             periodic: self.periodic.map(|p| p.is_some()),
         };
-        self.sampler.sample(&view, &self.devices, step)
+        let readings = self.sampler.sample(&view, &self.devices, step);
+        if self.state.rest.asleep {
+            self.still.get_or_init(|| readings.clone());
+        }
+        readings
     }
 
     fn save(&self) -> Result<Vec<u8>, String> {
@@ -223,6 +239,7 @@ impl<const D: usize> Engine for Simulation<D> {
             return Err("its devices, gauges or particles do not fit this scene".to_owned());
         }
         self.state = saved.state;
+        self.still = OnceLock::new();
         self.solver.resume(&self.state);
         self.refresh_devices();
         Ok(())
@@ -279,7 +296,7 @@ impl<const D: usize> Engine for Simulation<D> {
             view.inertial_number
                 .push(self.solver.inertial_number()[i] as f32);
             view.phase.push(grains.phase[i]);
-            view.asleep.push(0);
+            view.asleep.push(u8::from(self.state.rest.asleep));
         }
         view
     }

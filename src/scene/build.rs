@@ -4,7 +4,7 @@ use crate::boundary::{GroupSpec, Plate, WallPoints, box_points, plane_points, po
 use crate::math::{Geometry, Vector, add, dot, norm, scale};
 use crate::shape::lattice;
 use crate::solver::{Periodic, Plan, Scheme, Sink, Source};
-use crate::state::{GateState, Grains, InflowState, Random, State};
+use crate::state::{GateState, Grains, InflowState, Random, RestState, State};
 
 use super::ghosts::ghost_depth;
 use super::steady_flow::steady_flow;
@@ -187,6 +187,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
         steps: 0,
         iterations: 0,
         step_size: 0.0,
+        rest: RestState::default(),
         random,
     })
 }

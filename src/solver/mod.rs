@@ -19,6 +19,7 @@ mod pair;
 mod paper_a;
 mod plastic;
 mod pressure;
+mod rest;
 mod ring;
 #[cfg(test)]
 mod ring_tests;
@@ -150,6 +151,7 @@ pub struct Solver<const D: usize> {
     sources: Vec<Source<D>>,
     sinks: Vec<Sink<D>>,
     workers: Arc<Workers>,
+    can_sleep: bool,
     lists: Lists<D>,
     kinematics: Vec<Kinematics>,
     /// V = m/rho; in the plane for each metre of width.
@@ -190,6 +192,7 @@ impl<const D: usize> Solver<D> {
         let h = numerics.spacing * numerics.smoothing_ratio;
         let kernel = WendlandC2::new(h);
         let fixed_groups = walls.groups.len() - plates.len();
+        let can_sleep = rest::can_sleep(&numerics, &walls);
         for plate in &mut plates {
             plate.append(&mut walls);
         }
@@ -212,6 +215,7 @@ impl<const D: usize> Solver<D> {
             sources,
             sinks,
             workers: Arc::new(Workers::new(threads)),
+            can_sleep,
             kinematics: Vec::new(),
             volume: Vec::new(),
             rings: Vec::new(),
@@ -265,12 +269,16 @@ impl<const D: usize> Solver<D> {
         inputs: &StepInputs<'_>,
         on_move: &mut OnMove<'_, D>,
     ) -> Result<SubStep, SolverError> {
+        if self.stays_asleep(state, inputs) {
+            return Ok(self.sleep_until(state, end));
+        }
         let (dt, bound) = self.choose_step(state, end)?;
         if let Scheme::PaperA(choices) = self.numerics.scheme {
             return self.step_paper_a(&choices, state, (dt, bound), on_move);
         }
         self.sweep_pressure(state, dt);
         let iterations = self.solve_viscous(state, dt)?;
+        let impulse = state.impulse.clone();
         self.add_reactions(state, dt);
         self.move_grains(state, dt)?;
         on_move(&self.before, &state.grains.position, &state.grains.mass);
@@ -288,6 +296,9 @@ impl<const D: usize> Solver<D> {
         state.steps += 1;
         state.iterations += u64::from(iterations);
         state.step_size = dt;
+        if self.can_sleep {
+            self.notice_rest(state, inputs, &impulse, dt);
+        }
         Ok(SubStep {
             dt,
             bound,

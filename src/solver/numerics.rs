@@ -56,6 +56,8 @@ pub struct Numerics {
     pub solver_tolerance: f64,
     /// Most iterations of the viscous solve before it is an error.
     pub solver_max_iterations: u32,
+    /// Whether a scene at rest sleeps until an input asks for something; default true.
+    pub sleep: bool,
     /// Random displacement of the starting lattice over dp [1]; default 0.1.
     pub jitter: f64,
     /// Seed of that displacement.

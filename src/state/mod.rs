@@ -40,8 +40,24 @@ pub struct State<const D: usize> {
     pub iterations: u64,
     /// Last internal step [s].
     pub step_size: f64,
+    /// Whether the scene sleeps, or how near it is to it.
+    pub rest: RestState<D>,
     /// Generator of inflow jitter.
     pub random: Random,
+}
+
+/// Sleep of a scene at rest.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RestState<const D: usize> {
+    /// Quiet steps in a row.
+    pub quiet_steps: u32,
+    /// Whether nothing is computed until an input changes.
+    pub asleep: bool,
+    /// Time of those steps [s].
+    pub quiet_time: f64,
+    /// Asleep: mean force of the quiet steps on each wall, then each gate [N]. Before: its impulse over them so far [N s].
+    #[serde(with = "flat")]
+    pub force: Vec<Vector<D>>,
 }
 
 /// Where a gate is.

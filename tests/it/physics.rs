@@ -8,6 +8,7 @@ mod collapse;
 mod conservation;
 mod incline;
 mod paper_a;
+mod rest;
 mod rheology;
 mod silo;
 

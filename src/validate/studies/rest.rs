@@ -46,6 +46,8 @@ fn heap(effort: Effort) -> Result<Member, String> {
         .with("domain.lower", point(-reach, -0.05))
         .with("domain.upper", point(reach, 1.5 * HEIGHT))
         .with("numerics.spacing", spacing)
+        // At rest by the yield, not by sleep.
+        .with("numerics.sleep", false)
         .without("bodies.sand.box")
         .with(
             "bodies.sand.polygon",
@@ -81,6 +83,8 @@ fn silo(effort: Effort) -> Result<Member, String> {
         .with("domain.lower", point(-0.05, -0.05))
         .with("domain.upper", point(width + 0.05, 1.3 * height))
         .with("numerics.spacing", spacing)
+        // At rest by the yield, not by sleep.
+        .with("numerics.sleep", false)
         .with("bodies.sand.box", rectangle([0.0, 0.0], SILO))
         .with("walls.floor.polyline", points(&walls))
         .with("walls.floor.slip", "no_slip")
@@ -93,7 +97,10 @@ fn silo(effort: Effort) -> Result<Member, String> {
 
 fn hydrostatic(effort: Effort) -> Result<Member, String> {
     let until = effort.pick(20.0, 5.0) * scale(HEIGHT);
-    let text = Template::new(TEMPLATE)?.with("run.until", until).text()?;
+    let text = Template::new(TEMPLATE)?
+        .with("run.until", until)
+        .with("numerics.sleep", false)
+        .text()?;
     let kept = [&KEPT[..], &["gauge.weight.force_y"]].concat();
     Ok(Member::new(
         "hydrostatic".to_owned(),
@@ -109,6 +116,7 @@ fn slope(name: &str, above: f64, effort: Effort) -> Result<Member, String> {
     let text = Template::new(SLOPE)?
         .with("domain.slope", (FRICTION + above).to_radians())
         .with("numerics.expected_speed", 0.3)
+        .with("numerics.sleep", false)
         .with("run.until", until)
         .text()?;
     Ok(Member::new(name.to_owned(), text, &KEPT, vec![until]))

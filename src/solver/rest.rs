@@ -1,0 +1,111 @@
+//! Sleep: a scene in which nothing has moved for a while is not computed until an input asks for something.
+//!
+//! Quiet is a step in which the root mean square of speeds is below 3e-6 c0 (3e-5 of the speed of a fall from the scene's
+//! height, as c0 is chosen), no particle is faster than 1e-4 c0, gates are where they should be, and nothing flows in.
+//! After [`QUIET_STEPS`] of them the particles stand still and time passes in one step, forces on walls as they were. A
+//! gate told to move or an inflow told to run wakes the scene. Scenes with moving walls or without walls never sleep.
+
+use crate::boundary::WallPoints;
+use crate::math::dot;
+use crate::state::{Grains, RestState, State};
+
+use super::{Numerics, Solver, StepBound, StepInputs, SubStep};
+
+/// Quiet steps before a scene sleeps: a wave crosses 100 h meanwhile.
+const QUIET_STEPS: u32 = 200;
+
+/// Root mean square speed of a quiet scene, over c0 [1].
+const QUIET_SPEED: f64 = 3e-6;
+
+/// Speed that no particle of a quiet scene has, over c0 [1]: grains without load may jitter on a surface for long, but what
+/// falls is faster before a scene sleeps.
+const FASTEST: f64 = 1e-4;
+
+/// Whether a scene can sleep at all: something fixed to rest on.
+pub(super) fn can_sleep<const D: usize>(numerics: &Numerics, walls: &WallPoints<D>) -> bool {
+    numerics.sleep && !walls.is_empty() && walls.velocity.iter().all(|v| *v == [0.0; D])
+}
+
+impl<const D: usize> Solver<D> {
+    /// Whether a sleeping scene stays asleep under these inputs; wakes it otherwise.
+    pub(super) fn stays_asleep(&self, state: &mut State<D>, inputs: &StepInputs<'_>) -> bool {
+        if !state.rest.asleep {
+            return false;
+        }
+        if self.is_left_alone(state, inputs) {
+            return true;
+        }
+        state.rest = RestState::default();
+        false
+    }
+
+    /// Lets time pass until `end`.
+    pub(super) fn sleep_until(&self, state: &mut State<D>, end: f64) -> SubStep {
+        let dt = end - state.time;
+        for (impulse, force) in state.impulse.iter_mut().zip(&state.rest.force) {
+            for k in 0..D {
+                impulse[k] += dt * force[k];
+            }
+        }
+        state.time = end;
+        SubStep {
+            dt,
+            bound: StepBound::Communication,
+            iterations: 0,
+        }
+    }
+
+    /// Counts quiet steps after a step of length dt; `before` are the impulses at its beginning.
+    pub(super) fn notice_rest(
+        &self,
+        state: &mut State<D>,
+        inputs: &StepInputs<'_>,
+        before: &[[f64; D]],
+        dt: f64,
+    ) {
+        if !(self.is_left_alone(state, inputs) && self.is_quiet(&state.grains)) {
+            state.rest = RestState::default();
+            return;
+        }
+        let rest = &mut state.rest;
+        rest.quiet_steps += 1;
+        rest.quiet_time += dt;
+        rest.force.resize(before.len(), [0.0; D]);
+        for (sum, (after, before)) in rest.force.iter_mut().zip(state.impulse.iter().zip(before)) {
+            for k in 0..D {
+                sum[k] += after[k] - before[k];
+            }
+        }
+        if rest.quiet_steps < QUIET_STEPS {
+            return;
+        }
+        rest.asleep = true;
+        let time = rest.quiet_time;
+        for force in &mut rest.force {
+            *force = force.map(|sum| sum / time);
+        }
+        state.grains.velocity.fill([0.0; D]);
+    }
+
+    fn is_quiet(&self, grains: &Grains<D>) -> bool {
+        let c0 = self.numerics.sound_speed;
+        let fast = (FASTEST * c0).powi(2);
+        let (mut mass, mut twice_energy) = (0.0, 0.0);
+        for (v, m) in grains.velocity.iter().zip(&grains.mass) {
+            let v2 = dot(v, v);
+            if v2 >= fast {
+                return false;
+            }
+            mass += m;
+            twice_energy += m * v2;
+        }
+        twice_energy < (QUIET_SPEED * c0).powi(2) * mass
+    }
+
+    /// Gates stand where they should and no inflow runs.
+    fn is_left_alone(&self, state: &State<D>, inputs: &StepInputs<'_>) -> bool {
+        let gates = state.gates.iter().zip(inputs.openings);
+        gates.into_iter().all(|(g, wanted)| g.opening == *wanted)
+            && inputs.rates.iter().all(|r| *r == 0.0)
+    }
+}
