@@ -26,6 +26,7 @@ fn numerics() -> Numerics {
         artificial_viscosity: 0.0,
         solver_tolerance: 3e-4,
         solver_max_iterations: 1000,
+        sleep: false,
         jitter: 0.1,
         seed: 1,
     }
@@ -91,6 +92,7 @@ fn column(
         steps: 0,
         iterations: 0,
         step_size: 0.0,
+        rest: crate::state::RestState::default(),
         random,
     };
     let mut solver = Solver::new(plan, 1);
