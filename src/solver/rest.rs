@@ -102,10 +102,12 @@ impl<const D: usize> Solver<D> {
         twice_energy < (QUIET_SPEED * c0).powi(2) * mass
     }
 
-    /// Gates stand where they should and no inflow runs.
+    /// Gates stand where they should, but for rounding, and no inflow runs.
     fn is_left_alone(&self, state: &State<D>, inputs: &StepInputs<'_>) -> bool {
         let gates = state.gates.iter().zip(inputs.openings);
-        gates.into_iter().all(|(g, wanted)| g.opening == *wanted)
+        gates
+            .into_iter()
+            .all(|(g, wanted)| (g.opening - wanted).abs() < 1e-9)
             && inputs.rates.iter().all(|r| *r == 0.0)
     }
 }
