@@ -12,7 +12,7 @@ use crate::gauge::{Reading, View};
 use crate::math::{Geometry, Vector, dot};
 use crate::scene::{self, Dimension, Scene};
 use crate::solver::{Solver, StepInputs, three};
-use crate::state::{CellGrid, State};
+use crate::state::{CellGrid, RestState, State};
 
 /// What is saved: the state, and what sections have counted.
 #[derive(Serialize, Deserialize)]
@@ -112,6 +112,11 @@ impl<const D: usize> Simulation<D> {
             iterations: 0,
         };
         self.state.time = start;
+        let mut ramps = inputs.gate_opening.iter().chain(&inputs.inflow_rate);
+        if ramps.any(|r| r.slope != 0.0) {
+            // What changes within the step would come too late for a sleeper.
+            self.state.rest = RestState::default();
+        }
         while self.state.time < end {
             let elapsed = self.state.time - start;
             let openings: Vec<f64> = inputs.gate_opening.iter().map(|r| r.at(elapsed)).collect();

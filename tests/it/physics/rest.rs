@@ -69,6 +69,16 @@ fn a_gate_wakes_a_silo() {
     println!("discharged {a:.4} kg after sleep, {b:.4} kg without");
     assert!(b > 1.0 && (a / b - 1.0).abs() < 0.02, "{a} and {b}");
 
+    // An opening that grows within one step is seen in that step.
+    asleep.component.restore(&saved).unwrap();
+    let reference = asleep.reference("gate.main.opening");
+    asleep
+        .component
+        .set_input_derivatives(&[reference], &[1.0])
+        .unwrap();
+    asleep.step();
+    assert!(asleep.get("gate.main.actual_opening") > 0.005);
+
     // The same again from the saved state, bit for bit.
     asleep.component.restore(&saved).unwrap();
     asleep.set("gate.main.opening", 1.0);

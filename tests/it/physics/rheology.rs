@@ -163,6 +163,8 @@ upper = ["50 mm", 0.4]
 periodic = ["x"]
 [numerics]
 spacing = "5 mm"
+# The floor's load is looked at step by step.
+sleep = false
 expected_speed = 1
 [materials.m]
 {material}
