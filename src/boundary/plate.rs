@@ -169,6 +169,7 @@ mod tests {
         let mut walls = WallPoints {
             groups: vec![GroupSpec {
                 free_slip: true,
+                friction: 0.0,
                 wants_force: false,
             }],
             ..WallPoints::default()

@@ -8,10 +8,12 @@ use crate::math::{Vector, add, dot, norm, scale, sub};
 pub const ROWS: usize = 4;
 
 /// What all points of one wall or gate share.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroupSpec {
     /// Free slip: only the normal part of motion is seen.
     pub free_slip: bool,
+    /// Coulomb friction mu_w >= 0 of a face with free slip, 0: none [1].
+    pub friction: f64,
     /// Whether somebody reads the force on it.
     pub wants_force: bool,
 }

@@ -114,6 +114,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
     let mut random = Random::new(scene.numerics.seed);
     let mut grains = Grains {
         exact_yield: scene.numerics.keeps_stress(),
+        wall_friction: scene.has_wall_friction(),
         ..Grains::default()
     };
     let mut id = 0;
@@ -241,7 +242,8 @@ fn group(scene: &Scene, slip: Slip, target: ForceTarget) -> GroupSpec {
         .iter()
         .any(|g| matches!(g.kind, GaugeKind::Force { on } if on == target));
     GroupSpec {
-        free_slip: slip == Slip::FreeSlip,
+        free_slip: slip != Slip::NoSlip,
+        friction: slip.friction(),
         wants_force,
     }
 }

@@ -157,4 +157,13 @@ impl Scene {
     pub fn up(&self) -> Point {
         types::up(self.domain.gravity, self.dimension)
     }
+
+    /// Whether a wall or gate has Coulomb friction.
+    #[must_use]
+    pub fn has_wall_friction(&self) -> bool {
+        let slips = self.walls.iter().map(|w| w.slip);
+        slips
+            .chain(self.gates.iter().map(|g| g.slip))
+            .any(|s| s.friction() > 0.0)
+    }
 }

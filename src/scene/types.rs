@@ -121,12 +121,28 @@ pub enum VelocityProfile {
 }
 
 /// What a wall does to material that slides along it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slip {
     /// Material sticks to the wall.
     NoSlip,
     /// No shear stress at the wall.
     FreeSlip,
+    /// Coulomb friction: a shear stress of at most mu_w times the normal one.
+    Friction {
+        /// mu_w >= 0 [1].
+        coefficient: f64,
+    },
+}
+
+impl Slip {
+    /// mu_w of Coulomb friction, else 0 [1].
+    #[must_use]
+    pub fn friction(self) -> f64 {
+        match self {
+            Slip::NoSlip | Slip::FreeSlip => 0.0,
+            Slip::Friction { coefficient } => coefficient,
+        }
+    }
 }
 
 /// A fixed wall.

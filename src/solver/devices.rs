@@ -169,5 +169,6 @@ impl<const D: usize> Solver<D> {
                 }
             }
         }
+        self.add_friction_reactions(state, dt);
     }
 }

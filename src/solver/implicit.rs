@@ -24,6 +24,8 @@ pub(super) struct Viscous<const D: usize> {
     product: Vec<Vector<D>>,
     /// The unknown; after the solve the new velocity [m/s].
     pub(super) velocity: Vec<Vector<D>>,
+    /// What of the wall friction of each of its rows does not follow the velocity [Pa].
+    pub(super) held: Vec<Vector<D>>,
 }
 
 impl<const D: usize> Viscous<D> {
@@ -54,6 +56,7 @@ impl<const D: usize> Solver<D> {
         state: &mut State<D>,
         dt: f64,
     ) -> Result<u32, SolverError> {
+        self.find_friction(state);
         let mut work = std::mem::take(&mut self.viscous);
         work.resize(state.grains.len());
         let result = self.solve_with_yield(state, dt, &mut work);
@@ -78,18 +81,24 @@ impl<const D: usize> Solver<D> {
         });
         self.stress(&work.velocity, &mut work.linear, true);
         self.jacobi_blocks(state, dt, &mut work.jacobi);
+        self.grip_blocks(dt, &mut work.jacobi);
         let limit = self.solver_limit(state, dt);
         match self.numerics.yield_form {
             YieldForm::Capped => {
                 work.tau.clone_from(&work.linear);
-                self.conjugate_gradients(state, dt, limit, work)
+                self.hold_friction(state, &mut work.held);
+                let spent = self.conjugate_gradients(state, dt, limit, work)?;
+                self.project_friction(state, work);
+                Ok(spent)
             }
             YieldForm::Exact { iterations } => {
                 let mut spent = 0;
                 for _ in 0..iterations {
                     self.add_plastic_stress(state, work);
+                    self.hold_friction(state, &mut work.held);
                     spent += self.conjugate_gradients(state, dt, limit, work)?;
                     self.project(state, work);
+                    self.project_friction(state, work);
                 }
                 Ok(spent)
             }
@@ -115,9 +124,11 @@ impl<const D: usize> Solver<D> {
             direction,
             product,
             velocity,
+            held,
         } = work;
         // residual = M (v* - v) + dt F(v), walls moving.
         self.force(velocity, tau, product, true);
+        self.add_friction_force(velocity, product, Some(held));
         workers.each(residual, |i, r| {
             let start = &self.prediction[i].velocity;
             *r =
@@ -151,6 +162,7 @@ impl<const D: usize> Solver<D> {
             });
             self.stress(direction, searched, false);
             self.force(direction, searched, product, false);
+            self.add_friction_force(direction, product, None);
             workers.each(product, |i, q| {
                 *q = std::array::from_fn(|k| mass[i] * direction[i][k] - dt * q[k])
             });

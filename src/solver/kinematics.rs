@@ -10,6 +10,7 @@ use crate::state::State;
 
 use super::Solver;
 use super::pair::{Block, Pair, WallRow};
+use super::wall_friction::Contact;
 
 /// What the sweep leaves per particle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,8 +65,10 @@ impl<const D: usize> Solver<D> {
     ) {
         let mut pairs = std::mem::take(&mut block.pairs);
         let mut wall_rows = std::mem::take(&mut block.wall_rows);
+        let mut contacts = std::mem::take(&mut block.contacts);
         pairs.clear();
         wall_rows.clear();
+        contacts.clear();
         block.pair_ends.clear();
         for (row, o) in out.iter_mut().enumerate() {
             let i = first + row;
@@ -83,7 +86,13 @@ impl<const D: usize> Solver<D> {
             }
             block.pair_ends.push(pairs.len() as u32);
             if !block.wall_row(row).is_empty()
-                && let Some(w) = self.wall_row(state, i, row, block.wall_row(row), &mut sums)
+                && let Some(w) = self.wall_row(
+                    state,
+                    (i, row),
+                    block.wall_row(row),
+                    &mut sums,
+                    &mut contacts,
+                )
             {
                 wall_rows.push(w);
             }
@@ -91,6 +100,7 @@ impl<const D: usize> Solver<D> {
         }
         block.pairs = pairs;
         block.wall_rows = wall_rows;
+        block.contacts = contacts;
     }
 
     /// Pairs and sums of a row; RINGS: particles are rings.
@@ -139,11 +149,12 @@ impl<const D: usize> Solver<D> {
     fn wall_row(
         &self,
         state: &State<D>,
-        i: usize,
-        row: usize,
+        (i, row): (usize, usize),
         near: &[u32],
         sums: &mut Row<D>,
+        contacts: &mut Vec<Contact<D>>,
     ) -> Option<WallRow<D>> {
+        let first_contact = contacts.len();
         let grains = &state.grains;
         let (xi, vi) = (&grains.position[i], &grains.velocity[i]);
         let support = self.kernel.support();
@@ -171,6 +182,9 @@ impl<const D: usize> Solver<D> {
             let projection = self.wall_projection(xi, wall, state);
             let seen =
                 |a: &Vector<D>| -> Vector<D> { projection.map_or(*a, |n| scale(dot(&n, a), &n)) };
+            if let Some(n) = projection {
+                self.touch(contacts, first_contact, (i, wall), &n, &g);
+            }
             for k in 0..D {
                 w.s[k] += g[k];
             }

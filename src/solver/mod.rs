@@ -26,6 +26,7 @@ mod ring_tests;
 mod timestep;
 mod validity;
 mod viscous;
+mod wall_friction;
 
 pub use devices::{Sink, Source};
 pub use error::SolverError;
@@ -47,6 +48,7 @@ use kinematics::Kinematics;
 use lists::Lists;
 use pressure::Prediction;
 use ring::Ring;
+use wall_friction::Friction;
 
 /// Skin of the neighbour lists over h [1].
 const SKIN: f64 = 0.3;
@@ -166,6 +168,7 @@ pub struct Solver<const D: usize> {
     inertial_number: Vec<f64>,
     prediction: Vec<Prediction<D>>,
     viscous: Viscous<D>,
+    friction: Friction<D>,
     paper_a: paper_a::Work<D>,
     /// Positions before the last move, for section crossings.
     before: Vec<Vector<D>>,
@@ -226,6 +229,7 @@ impl<const D: usize> Solver<D> {
             inertial_number: Vec::new(),
             prediction: Vec::new(),
             viscous: Viscous::default(),
+            friction: Friction::default(),
             paper_a: paper_a::Work::default(),
             before: Vec::new(),
         }
@@ -344,6 +348,11 @@ impl<const D: usize> Solver<D> {
                 grains.position[i][0] *= -1.0;
                 grains.velocity[i][0] *= -1.0;
                 grains.viscous_acceleration[i][0] *= -1.0;
+                for vectors in [&mut grains.wall_traction, &mut grains.wall_slip] {
+                    if let Some(t) = vectors.get_mut(i) {
+                        t[0] *= -1.0;
+                    }
+                }
                 for tensors in [&mut grains.stress, &mut grains.plastic_rate] {
                     if let Some(t) = tensors.get_mut(i) {
                         (t[0][1], t[1][0]) = (-t[0][1], -t[1][0]);

@@ -2,6 +2,8 @@
 
 use crate::math::{Tensor, Vector};
 
+use super::wall_friction::Contact;
+
 /// Particle i against neighbour j: all that sweeps need.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair<const D: usize> {
@@ -45,6 +47,8 @@ pub(super) struct Block<const D: usize> {
     pub(super) pair_ends: Vec<u32>,
     /// Rows that see walls.
     pub(super) wall_rows: Vec<WallRow<D>>,
+    /// Faces with friction that rows see, row after row; empty in scenes without.
+    pub(super) contacts: Vec<Contact<D>>,
 }
 
 impl<const D: usize> Block<D> {

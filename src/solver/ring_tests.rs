@@ -56,6 +56,7 @@ fn column(
     let mut walls = WallPoints::default();
     walls.groups.push(GroupSpec {
         free_slip: false,
+        friction: 0.0,
         wants_force: false,
     });
     if floor {

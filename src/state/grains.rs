@@ -9,6 +9,8 @@ use crate::math::{Tensor, Vector};
 pub struct Grains<const D: usize> {
     /// Whether the exact yield is on: `stress` and `plastic_rate` are kept.
     pub exact_yield: bool,
+    /// Whether walls have Coulomb friction: `wall_traction` and `wall_slip` are kept.
+    pub wall_friction: bool,
     /// Position x [m].
     #[serde(with = "flat")]
     pub position: Vec<Vector<D>>,
@@ -34,6 +36,12 @@ pub struct Grains<const D: usize> {
     /// Plastic strain rate q of the exact yield [1/s]; empty without it.
     #[serde(with = "flat_tensors")]
     pub plastic_rate: Vec<Tensor<D>>,
+    /// Multiplier T of wall friction, along the slip that it resists [Pa]; empty without wall friction.
+    #[serde(with = "flat")]
+    pub wall_traction: Vec<Vector<D>>,
+    /// Slip velocity s along frictional walls that belongs to it [m/s]; empty without wall friction.
+    #[serde(with = "flat")]
+    pub wall_slip: Vec<Vector<D>>,
     /// Position when the neighbour lists were built [m].
     #[serde(with = "flat")]
     pub listed: Vec<Vector<D>>,
@@ -56,6 +64,8 @@ macro_rules! for_each_field {
         $f(&mut $self.viscous_acceleration, $($extra)*);
         $f(&mut $self.stress, $($extra)*);
         $f(&mut $self.plastic_rate, $($extra)*);
+        $f(&mut $self.wall_traction, $($extra)*);
+        $f(&mut $self.wall_slip, $($extra)*);
         $f(&mut $self.listed, $($extra)*);
         $f(&mut $self.id, $($extra)*);
         $f(&mut $self.phase, $($extra)*);
@@ -97,6 +107,10 @@ impl<const D: usize> Grains<D> {
             self.stress.push([[0.0; D]; D]);
             self.plastic_rate.push([[0.0; D]; D]);
         }
+        if self.wall_friction {
+            self.wall_traction.push([0.0; D]);
+            self.wall_slip.push([0.0; D]);
+        }
         self.listed.push(position);
         self.id.push(id);
         self.phase.push(phase);
@@ -130,9 +144,10 @@ impl<const D: usize> Grains<D> {
             self.phase.len(),
             self.drained.len(),
         ];
-        let optional = if self.exact_yield { n } else { 0 };
+        let kept = |option: bool| [if option { n } else { 0 }; 2];
         lengths.iter().all(|&l| l == n)
-            && [self.stress.len(), self.plastic_rate.len()] == [optional; 2]
+            && [self.stress.len(), self.plastic_rate.len()] == kept(self.exact_yield)
+            && [self.wall_traction.len(), self.wall_slip.len()] == kept(self.wall_friction)
             && self
                 .density
                 .iter()
@@ -143,6 +158,8 @@ impl<const D: usize> Grains<D> {
                 .position
                 .iter()
                 .chain(&self.velocity)
+                .chain(&self.wall_traction)
+                .chain(&self.wall_slip)
                 .chain(self.stress.as_flattened())
                 .chain(self.plastic_rate.as_flattened())
                 .flatten()

@@ -11,6 +11,7 @@ mod paper_a;
 mod rest;
 mod rheology;
 mod silo;
+mod walls;
 
 use sandgate::component::{Component, ValueReference};
 use sandgate::scene::{self, Scene};

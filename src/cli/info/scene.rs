@@ -129,10 +129,11 @@ fn parts(scene: &Scene) -> Vec<String> {
     lines
 }
 
-fn slip(slip: Slip) -> &'static str {
+fn slip(slip: Slip) -> String {
     match slip {
-        Slip::NoSlip => "no slip",
-        Slip::FreeSlip => "free slip",
+        Slip::NoSlip => "no slip".to_owned(),
+        Slip::FreeSlip => "free slip".to_owned(),
+        Slip::Friction { coefficient } => format!("friction {coefficient}"),
     }
 }
 

@@ -165,9 +165,9 @@ impl Lift<'_> {
         if wall
             .slip
             .as_ref()
-            .is_some_and(|s| s.value == SlipWord::FreeSlip)
+            .is_some_and(|s| s.value != SlipWord::NoSlip)
         {
-            return Some("a wall with free slip");
+            return Some("a wall with free slip or friction");
         }
         if wall.r#box.is_some() {
             return Some("a box, whose corners stand out into the material");

@@ -2,7 +2,7 @@
 
 use super::geometry::Region;
 use super::{Lift, dot, length, minus, normalized};
-use crate::scene::raw::{At, Entry, Place, RawGate, RawWall, SlipWord};
+use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
 use crate::scene::types::{Gate, Point, Slip, Wall, WallGeometry};
 
 /// Rows of wall particles: a gate is at least this many spacings deep.
@@ -18,16 +18,43 @@ pub(super) enum Solid {
     Plane { point: Point, normal: Point },
 }
 
-impl From<SlipWord> for Slip {
-    fn from(word: SlipWord) -> Self {
-        match word {
+impl Lift<'_> {
+    /// Slip of the wall or gate at `place`, with its coefficient of friction: there with slip = "friction" and only then.
+    fn slip(
+        &mut self,
+        place: &Place,
+        word: Option<&At<SlipWord>>,
+        friction: Option<&At<Ratio>>,
+        given: &[&str],
+    ) -> Option<Slip> {
+        let slip = match word?.value {
             SlipWord::NoSlip => Slip::NoSlip,
             SlipWord::FreeSlip => Slip::FreeSlip,
+            SlipWord::Friction => {
+                if !given.contains(&"wall_friction") {
+                    self.problems.report(
+                        place,
+                        "slip = \"friction\" without wall_friction",
+                        "a coefficient mu_w >= 0",
+                        "add for example wall_friction = 0.4",
+                    );
+                }
+                return Some(Slip::Friction {
+                    coefficient: friction?.value.0,
+                });
+            }
+        };
+        if let Some(friction) = friction {
+            self.problems.report(
+                &friction.place,
+                "wall_friction on a wall that has another slip",
+                "wall_friction only beside slip = \"friction\"",
+                "add slip = \"friction\", or delete it",
+            );
         }
+        Some(slip)
     }
-}
 
-impl Lift<'_> {
     pub(super) fn walls(&mut self) -> Vec<Wall> {
         let raw = self.raw;
         let entries = Self::readable(raw.walls.as_ref());
@@ -37,6 +64,12 @@ impl Lift<'_> {
 
     fn wall(&mut self, entry: &Entry<RawWall>, raw: &RawWall) -> Option<Wall> {
         let geometry = self.wall_geometry(entry, raw)?;
+        let slip = self.slip(
+            &entry.place,
+            raw.slip.as_ref(),
+            raw.wall_friction.as_ref(),
+            &raw.given,
+        );
         let velocity = match &raw.velocity {
             Some(at) => {
                 let velocity = self.vector(at)?;
@@ -48,7 +81,7 @@ impl Lift<'_> {
         Some(Wall {
             name: entry.name.clone(),
             geometry,
-            slip: raw.slip.as_ref()?.value.into(),
+            slip: slip?,
             velocity,
         })
     }
@@ -194,6 +227,12 @@ impl Lift<'_> {
         let from = raw.from.as_ref().and_then(|p| self.point(p));
         let to = raw.to.as_ref().and_then(|p| self.point(p));
         let thickness = self.thickness(raw);
+        let slip = self.slip(
+            &entry.place,
+            raw.slip.as_ref(),
+            raw.wall_friction.as_ref(),
+            &raw.given,
+        );
         let (from, to, span, spacing) = (from?, to?, span?, self.spacing?);
         self.check_face(&entry.place, from, to, span);
         self.heights.extend([self.height(from), self.height(to)]);
@@ -205,7 +244,7 @@ impl Lift<'_> {
             thickness: thickness.unwrap_or(ROWS * spacing),
             max_speed: raw.max_speed.as_ref()?.value.0,
             start: raw.start.as_ref()?.value.0,
-            slip: raw.slip.as_ref()?.value.into(),
+            slip: slip?,
         };
         if let (true, Some(plate)) = (self.planar(), plate(&gate)) {
             self.plates.push((entry.place.clone(), plate));

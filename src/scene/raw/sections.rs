@@ -311,6 +311,8 @@ choice! {
         "no_slip" => NoSlip,
         /// no shear stress at the wall
         "free_slip" => FreeSlip,
+        /// Coulomb friction: material sticks until the shear stress is wall_friction times the normal one, then slides
+        "friction" => Friction,
     }
 }
 
@@ -327,6 +329,8 @@ table! {
         optional plane: RawPlane;
         /// Whether material sticks or slides.
         optional slip: SlipWord, default "no_slip";
+        /// Coefficient mu_w of slip = "friction", tan of the wall friction angle.
+        optional wall_friction: Ratio, in Range::from(0.0);
         /// Velocity of the wall's surface, along the surface: a belt. The wall itself stays.
         optional velocity: Coordinates<Speed>;
     }
@@ -359,6 +363,8 @@ table! {
         optional start: Ratio, in Range::within(0.0, 1.0), default 0;
         /// Whether material sticks to its faces.
         optional slip: SlipWord, default "free_slip";
+        /// Coefficient mu_w of slip = "friction", tan of the wall friction angle.
+        optional wall_friction: Ratio, in Range::from(0.0);
     }
 }
 

@@ -1,0 +1,293 @@
+//! Coulomb friction of walls and gates by the augmented Lagrangian of the yield (docs/theory.md, "Wall friction").
+//!
+//! A face with friction acts across itself as one with free slip. Along itself it pushes particle i with
+//! -a P T_i, a = -2 n.S V_i the face's share of the particle (so that its normal force is a (p - n.tau n)),
+//! P = I - n n^T, and T_i a multiplier with |P T_i| <= mu_w (p - n.tau n). Each linear solve holds
+//! -a [P (T - r s) + r P (v - v_w)], s the slip that belongs to T; afterwards x = T + r (slip) is cut to the disc:
+//!
+//! T = x - (what is beyond mu_w (p - n.tau n)),   s = (x - T)/r.                                           (W3)
+//!
+//! Material that sticks has s = 0 and does not creep; where it slides T is on the disc, against the slip.
+
+use std::ops::Range;
+
+use crate::math::{Tensor, Vector, add_outer, apply, dot, inverse, norm, scale, sub, trace};
+use crate::state::State;
+
+use super::Solver;
+use super::implicit::Viscous;
+
+/// A face with friction, as one particle sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact<const D: usize> {
+    /// The particle.
+    i: u32,
+    /// Group of the wall or gate.
+    group: u16,
+    /// Unit normal towards the material.
+    normal: Vector<D>,
+    /// Area a [m^2].
+    area: f64,
+    /// Sum of a v_w over the face's points [m^3/s].
+    drive: Vector<D>,
+}
+
+/// A particle that sees faces with friction.
+#[derive(Clone, Debug)]
+pub(super) struct FrictionRow<const D: usize> {
+    i: usize,
+    /// Its contacts, of [`Friction::contacts`].
+    range: Range<usize>,
+    /// Sum of a P over the contacts [m^2].
+    grip: Tensor<D>,
+    /// Sum of a P v_w over the contacts [m^3/s].
+    drive: Vector<D>,
+    /// Turns a force along the faces into the traction that makes it; only this little of it across them.
+    spread: Tensor<D>,
+    /// Penalty r [Pa s/m].
+    penalty: f64,
+}
+
+/// Who sees walls with friction; empty in scenes without.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Friction<const D: usize> {
+    contacts: Vec<Contact<D>>,
+    /// In ascending order of particles.
+    rows: Vec<FrictionRow<D>>,
+}
+
+/// Share of a face's area that `spread` gives the direction across all faces, where it has none.
+const ACROSS: f64 = 1e-2;
+
+impl<const D: usize> Contact<D> {
+    /// P a.
+    fn along(&self, a: &Vector<D>) -> Vector<D> {
+        sub(a, &scale(dot(a, &self.normal), &self.normal))
+    }
+}
+
+impl<const D: usize> Solver<D> {
+    /// Adds a wall point to the contacts of row i, which begin at `first`; n the normal there, g = V_i w grad W.
+    #[inline(always)]
+    pub(super) fn touch(
+        &self,
+        contacts: &mut Vec<Contact<D>>,
+        first: usize,
+        (i, wall): (usize, u32),
+        n: &Vector<D>,
+        g: &Vector<D>,
+    ) {
+        let group = self.walls.group[wall as usize];
+        if self.walls.groups[group as usize].friction == 0.0 {
+            return;
+        }
+        let area = -2.0 * dot(g, n) * self.volume[i] * self.width;
+        let drive = scale(area, &self.walls.velocity[wall as usize]);
+        let same = |c: &&mut Contact<D>| c.group == group && dot(&c.normal, n) > 1.0 - 1e-9;
+        if let Some(contact) = contacts[first..].iter_mut().find(same) {
+            contact.area += area;
+            for k in 0..D {
+                contact.drive[k] += drive[k];
+            }
+        } else {
+            contacts.push(Contact {
+                i: i as u32,
+                group,
+                normal: *n,
+                area,
+                drive,
+            });
+        }
+    }
+
+    /// Makes the friction rows of a step from the contacts of the last sweep.
+    pub(super) fn find_friction(&mut self, state: &mut State<D>) {
+        if !state.grains.wall_friction {
+            return;
+        }
+        let Friction {
+            mut contacts,
+            mut rows,
+        } = std::mem::take(&mut self.friction);
+        contacts.clear();
+        rows.clear();
+        let seen = self.lists.blocks.iter().flat_map(|b| &b.contacts);
+        contacts.extend(seen.filter(|c| c.area > 0.0));
+        let mut first = 0;
+        for seen in contacts.chunk_by(|a, b| a.i == b.i) {
+            let range = first..first + seen.len();
+            first = range.end;
+            let i = seen[0].i as usize;
+            rows.push(self.friction_row(i, range, seen, &state.grains.velocity[i]));
+        }
+        self.friction = Friction { contacts, rows };
+        // What has left the walls takes no traction with it.
+        let grains = &mut state.grains;
+        let mut next = 0;
+        let ends = self.friction.rows.iter().map(|r| r.i);
+        for end in ends.chain([grains.len()]) {
+            grains.wall_traction[next..end].fill([0.0; D]);
+            grains.wall_slip[next..end].fill([0.0; D]);
+            next = end + 1;
+        }
+    }
+
+    /// Sums over the contacts of particle i, and its penalty at velocity v.
+    fn friction_row(
+        &self,
+        i: usize,
+        range: Range<usize>,
+        contacts: &[Contact<D>],
+        v: &Vector<D>,
+    ) -> FrictionRow<D> {
+        let mut row = FrictionRow {
+            i,
+            range,
+            grip: [[0.0; D]; D],
+            drive: [0.0; D],
+            spread: [[0.0; D]; D],
+            penalty: 0.0,
+        };
+        let mut normal = [0.0; D];
+        let (mut area, mut friction) = (0.0, 0.0);
+        for c in contacts {
+            let drive = c.along(&c.drive);
+            for k in 0..D {
+                row.grip[k][k] += c.area;
+                row.drive[k] += drive[k];
+                normal[k] += c.area * c.normal[k];
+            }
+            add_outer(&mut row.grip, -c.area, &c.normal, &c.normal);
+            area += c.area;
+            friction += c.area * self.walls.groups[c.group as usize].friction;
+        }
+        friction /= area;
+        let mut full = row.grip;
+        let size = norm(&normal);
+        let across = if size > 0.0 {
+            scale(1.0 / size, &normal)
+        } else {
+            [0.0; D]
+        };
+        // A flat face has no area across itself, and a bend little: there it takes no part.
+        let least = dot(&across, &apply(&full, &across));
+        add_outer(
+            &mut full,
+            (ACROSS * trace(&row.grip)).max(least) - least,
+            &across,
+            &across,
+        );
+        row.spread = inverse(&full);
+        let slip = norm(&row.slip(v));
+        let pressure = self.normal_pressure()[row.i].max(0.0);
+        let stick = friction.min(1.0) * self.numerics.cap_time / (0.5 * self.numerics.spacing);
+        row.penalty = pressure * stick.min(0.1 * friction / slip.max(f64::MIN_POSITIVE));
+        row
+    }
+
+    /// Notes T - r s of every row, what of the next solve's tractions does not follow the velocity [Pa].
+    pub(super) fn hold_friction(&self, state: &State<D>, held: &mut Vec<Vector<D>>) {
+        let (t, s) = (&state.grains.wall_traction, &state.grains.wall_slip);
+        let rows = self.friction.rows.iter();
+        held.clear();
+        held.extend(rows.map(|r| sub(&t[r.i], &scale(r.penalty, &s[r.i]))));
+    }
+
+    /// Adds friction to the forces on particles [N]; `held`: with what does not follow the velocity.
+    pub(super) fn add_friction_force(
+        &self,
+        v: &[Vector<D>],
+        force: &mut [Vector<D>],
+        held: Option<&[Vector<D>]>,
+    ) {
+        for (n, row) in self.friction.rows.iter().enumerate() {
+            let mut push = scale(row.penalty, &apply(&row.grip, &v[row.i]));
+            if let Some(held) = held {
+                let held = apply(&row.grip, &held[n]);
+                for k in 0..D {
+                    push[k] += held[k] - row.penalty * row.drive[k];
+                }
+            }
+            for k in 0..D {
+                force[row.i][k] -= push[k];
+            }
+        }
+    }
+
+    /// Inverse Jacobi blocks with dt r sum a P.
+    pub(super) fn grip_blocks(&self, dt: f64, jacobi: &mut [Tensor<D>]) {
+        for row in &self.friction.rows {
+            let mut block = inverse(&jacobi[row.i]);
+            for r in 0..D {
+                for c in 0..D {
+                    block[r][c] += dt * row.penalty * row.grip[r][c];
+                }
+            }
+            jacobi[row.i] = inverse(&block);
+        }
+    }
+
+    /// (W3) for every particle that sees a wall with friction, at the velocity and stress of the last solve.
+    pub(super) fn project_friction(&self, state: &mut State<D>, work: &Viscous<D>) {
+        let grains = &mut state.grains;
+        for row in &self.friction.rows {
+            let i = row.i;
+            if row.penalty <= 0.0 {
+                (grains.wall_traction[i], grains.wall_slip[i]) = ([0.0; D], [0.0; D]);
+                continue;
+            }
+            let slip = row.slip(&work.velocity[i]);
+            let t = &grains.wall_traction[i];
+            let x: Vector<D> = std::array::from_fn(|k| t[k] + row.penalty * slip[k]);
+            let mut beyond = [0.0; D];
+            for c in &self.friction.contacts[row.range.clone()] {
+                let along = c.along(&x);
+                let size = norm(&along);
+                let most = self.friction_limit(c, &work.tau[i]);
+                if size > most {
+                    for k in 0..D {
+                        beyond[k] += c.area * (1.0 - most / size) * along[k];
+                    }
+                }
+            }
+            let cut = apply(&row.spread, &beyond);
+            grains.wall_traction[i] = sub(&x, &cut);
+            grains.wall_slip[i] = scale(1.0 / row.penalty, &cut);
+        }
+    }
+
+    /// mu_w (p - n.tau n) >= 0 of a contact [Pa].
+    fn friction_limit(&self, c: &Contact<D>, tau: &Tensor<D>) -> f64 {
+        let pull = dot(&c.normal, &apply(tau, &c.normal));
+        let pressure = self.normal_pressure()[c.i as usize] - pull;
+        self.walls.groups[c.group as usize].friction * pressure.max(0.0)
+    }
+
+    /// Adds the impulse of friction over one step to those on walls whose force somebody reads [N s].
+    pub(super) fn add_friction_reactions(&self, state: &mut State<D>, dt: f64) {
+        for (row, held) in self.friction.rows.iter().zip(&self.viscous.held) {
+            let v = &self.viscous.velocity[row.i];
+            for c in &self.friction.contacts[row.range.clone()] {
+                let group = c.group as usize;
+                if !self.walls.groups[group].wants_force {
+                    continue;
+                }
+                let push: Vector<D> = std::array::from_fn(|k| {
+                    c.area * held[k] + row.penalty * (c.area * v[k] - c.drive[k])
+                });
+                let push = c.along(&push);
+                for k in 0..D {
+                    state.impulse[group][k] += dt * push[k];
+                }
+            }
+        }
+    }
+}
+
+impl<const D: usize> FrictionRow<D> {
+    /// Slip velocity along the faces at velocity v [m/s].
+    fn slip(&self, v: &Vector<D>) -> Vector<D> {
+        let gripped = sub(&apply(&self.grip, v), &self.drive);
+        apply(&self.spread, &gripped)
+    }
+}

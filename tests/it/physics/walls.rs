@@ -1,0 +1,273 @@
+//! Walls: Coulomb friction, motion, corners; what they push back with.
+
+use super::Unit;
+use sandgate::scene;
+
+const G: f64 = 9.81;
+
+/// A scene of strong material, which moves as a block, of particles of 10 mm.
+fn unit(domain: &str, numerics: &str, parts: &str) -> Unit {
+    let text = format!(
+        r#"
+name = "block"
+{domain}
+[numerics]
+spacing = "10 mm"
+sleep = false
+{numerics}
+[materials.block]
+law = "constant_friction"
+friction_angle = "40 deg"
+cohesion = 1000
+density = 1500
+{parts}
+[run]
+step = "10 ms"
+until = "1 s"
+"#
+    );
+    Unit::new(&scene::parse("block", &text).unwrap())
+}
+
+/// A layer 12 by 10 particles on a floor tilted by `slope` [deg], periodic along it. `floor` holds keys of its wall.
+fn layer(slope: f64, floor: &str, numerics: &str) -> Unit {
+    unit(
+        &format!(
+            r#"
+[domain]
+lower = [0, -0.02]
+upper = [0.12, 0.3]
+periodic = ["x"]
+slope = "{slope} deg""#
+        ),
+        numerics,
+        &format!(
+            r#"
+[bodies.block]
+material = "block"
+box = {{ lower = [0, 0], upper = [0.12, 0.1] }}
+[walls.floor]
+plane = {{ point = [0, 0], normal = [0, 1] }}
+{floor}
+[gauges.floor]
+kind = "force"
+on = "wall.floor""#
+        ),
+    )
+}
+
+const FRICTION: &str = "slip = \"friction\"\nwall_friction = 0.4";
+
+/// Mean velocity along x, and the largest size of one component of it [m/s].
+fn speeds(unit: &Unit) -> (f64, f64) {
+    let particles = unit.component.particles();
+    let along: Vec<f64> = particles.velocity.iter().map(|v| f64::from(v[0])).collect();
+    let mean = along.iter().sum::<f64>() / along.len() as f64;
+    (mean, along.iter().fold(0.0, |m: f64, v| m.max(v.abs())))
+}
+
+/// Acceleration along x between two times [m/s^2].
+fn acceleration(unit: &mut Unit, from: f64, to: f64) -> f64 {
+    unit.run_to(from);
+    let (before, _) = speeds(unit);
+    unit.run_to(to);
+    (speeds(unit).0 - before) / (to - from)
+}
+
+/// Above atan(mu_w) = 21.8 deg a block slides with g (sin - mu_w cos), and the floor carries mu_w times its weight: the
+/// layer swings by a part of 1000 as it settles.
+#[test]
+fn a_block_slides_as_coulomb_says() {
+    let slope = 30f64.to_radians();
+    let expected = G * (slope.sin() - 0.4 * slope.cos());
+    let mut sliding = layer(30.0, FRICTION, "");
+    let measured = acceleration(&mut sliding, 0.2, 0.7);
+    let mu = sliding.get("gauge.floor.force_x") / -sliding.get("gauge.floor.force_y");
+    println!(
+        "slides with {measured:.5} m/s^2 ({expected:.5}); shear force {mu:.5} of the normal one"
+    );
+    assert!((measured / expected - 1.0).abs() < 2e-3);
+    assert!((mu / 0.4 - 1.0).abs() < 1e-3);
+}
+
+/// Below that angle it stays; what it shook at first dies out, and nothing creeps. With a large mu_w it stays on any
+/// slope that it does not yield on.
+#[test]
+fn a_block_sticks_below_the_angle_of_wall_friction() {
+    for (slope, floor) in [
+        (20.0, FRICTION),
+        (35.0, "slip = \"friction\"\nwall_friction = 5"),
+    ] {
+        let mut resting = layer(slope, floor, "");
+        resting.run_to(1.0);
+        let (_, first) = speeds(&resting);
+        let place = |u: &Unit| -> f64 {
+            let x = u.component.particles().position;
+            x.iter().map(|x| f64::from(x[0])).sum::<f64>() / x.len() as f64
+        };
+        let start = place(&resting);
+        resting.run_to(3.0);
+        let (_, last) = speeds(&resting);
+        let moved = place(&resting) - start;
+        println!(
+            "at {slope} deg {first:.1e} m/s after 1 s, {last:.1e} after 3 s; moved by {moved:.1e} m in 2 s"
+        );
+        assert!(last < 1e-5 && last < first && moved.abs() < 1e-6);
+    }
+}
+
+/// mu_w = 0 is free slip to the bit, a tiny one is near it: the solve is good to 3e-4 of a step's fall.
+#[test]
+fn no_friction_is_free_slip() {
+    let run = |floor: &str| {
+        let mut unit = layer(30.0, floor, "");
+        unit.run_to(0.3);
+        unit.component.particles().velocity
+    };
+    let free = run("slip = \"free_slip\"");
+    assert_eq!(run("slip = \"friction\"\nwall_friction = 0"), free);
+    let tiny = run("slip = \"friction\"\nwall_friction = 1e-6");
+    for (a, b) in tiny.iter().zip(&free) {
+        assert!((a[0] - b[0]).abs() < 2e-4, "{a:?} and {b:?}");
+    }
+}
+
+/// With the plain cap a block slides too; it shears at up to 1/cap_time meanwhile, which is 1 % here.
+#[test]
+fn a_capped_yield_slides_as_well() {
+    let slope = 30f64.to_radians();
+    let expected = G * (slope.sin() - 0.4 * slope.cos());
+    let measured = acceleration(&mut layer(30.0, FRICTION, "yield = \"capped\""), 0.2, 0.7);
+    println!("slides with {measured:.5} m/s^2 ({expected:.5})");
+    assert!((measured / expected - 1.0).abs() < 0.02);
+}
+
+/// A belt takes a block along at mu_w g until both are as fast, and then the block rides on it.
+#[test]
+fn a_belt_takes_a_block_along() {
+    let mut belt = layer(0.0, &format!("{FRICTION}\nvelocity = [1, 0]"), "");
+    let measured = acceleration(&mut belt, 0.05, 0.2);
+    println!("taken along with {measured:.5} m/s^2 ({:.5})", 0.4 * G);
+    assert!((measured / (0.4 * G) - 1.0).abs() < 3e-3);
+    belt.run_to(1.5);
+    let (mean, largest) = speeds(&belt);
+    println!("rides at {mean:.6} m/s, at most {largest:.6} m/s");
+    assert!((mean - 1.0).abs() < 1e-5 && largest < 1.0 + 1e-4);
+}
+
+/// In space friction acts against the slip, whatever its direction along the face.
+#[test]
+fn a_block_in_space_slides_the_same() {
+    let mut block = unit(
+        r#"
+dimension = 3
+[domain]
+lower = [0, 0, -0.02]
+upper = [0.08, 0.08, 0.3]
+periodic = ["x", "y"]
+gravity = [3, 4, -10]"#,
+        "",
+        r#"
+[bodies.block]
+material = "block"
+box = { lower = [0, 0, 0], upper = [0.08, 0.08, 0.06] }
+[walls.floor]
+plane = { point = [0, 0, 0], normal = [0, 0, 1] }
+slip = "friction"
+wall_friction = 0.3"#,
+    );
+    let expected = 3.0 * (5.0 - 0.3 * 10.0) / 5.0;
+    let measured = acceleration(&mut block, 0.1, 0.3);
+    let velocity = block.component.particles().velocity;
+    let mean = |k: usize| velocity.iter().map(|v| f64::from(v[k])).sum::<f64>();
+    println!(
+        "slides with {measured:.5} m/s^2 ({expected:.5}); v_y/v_x {:.5}",
+        mean(1) / mean(0)
+    );
+    assert!((measured / expected - 1.0).abs() < 5e-3);
+    assert!((mean(1) / mean(0) - 4.0 / 3.0).abs() < 2e-3);
+}
+
+/// A gate drawn from under a block feels mu_w times its weight; its ends stay beyond the block.
+#[test]
+fn a_gate_is_held_by_friction() {
+    let mut block = unit(
+        "[domain]\nlower = [-0.1, -0.1]\nupper = [0.3, 0.3]",
+        "",
+        r#"
+[bodies.block]
+material = "block"
+box = { lower = [0, 0], upper = [0.2, 0.1] }
+[walls.sides]
+polyline = [[0, 0.2], [0, 0]]
+slip = "free_slip"
+[walls.end]
+polyline = [[0.2, 0], [0.2, 0.2]]
+slip = "free_slip"
+[gates.floor]
+from = [-0.06, 0]
+to = [0.26, 0]
+max_speed = 0.01
+slip = "friction"
+wall_friction = 0.3
+[gauges.floor]
+kind = "force"
+on = "gate.floor""#,
+    );
+    block.run_to(0.5);
+    let still = block.get("gauge.floor.force_x");
+    block.set("gate.floor.opening", 0.05);
+    block.run_to(1.0);
+    let (x, y) = (
+        block.get("gauge.floor.force_x"),
+        block.get("gauge.floor.force_y"),
+    );
+    println!("{still:.3} N at rest, {x:.3} N of {:.3} N drawn", -y);
+    assert!((x / y - 0.3).abs() < 3e-3, "{}", x / y);
+    assert!(still.abs() < 0.01 * y.abs());
+}
+
+/// A plug in a round pipe: floor and pipe carry its weight together, the pipe its share by friction; and a restored
+/// state goes on with the same bits.
+#[test]
+fn a_pipe_carries_its_share() {
+    let mut pipe = unit(
+        "dimension = \"axisymmetric\"\n[domain]\nlower = [0, -0.1]\nupper = [0.2, 0.5]",
+        "",
+        r#"
+[bodies.plug]
+material = "block"
+box = { lower = [0, 0], upper = [0.1, 0.2] }
+[walls.pipe]
+polyline = [[0.1, -0.05], [0.1, 0.5]]
+slip = "friction"
+wall_friction = 0.4
+[walls.floor]
+polyline = [[0, 0], [0.1, 0]]
+slip = "friction"
+wall_friction = 0.4
+[gauges.pipe]
+kind = "force"
+on = "wall.pipe"
+[gauges.floor]
+kind = "force"
+on = "wall.floor""#,
+    );
+    pipe.run_to(0.5);
+    let saved = pipe.component.save().unwrap();
+    pipe.run_to(1.0);
+    let forces = |u: &Unit| (u.get("gauge.pipe.force_y"), u.get("gauge.floor.force_y"));
+    let (side, floor) = forces(&pipe);
+    let weight = pipe.component.ledger().present * G;
+    println!("pipe {side:.3} N, floor {floor:.3} N, weight {weight:.3} N");
+    assert!(side < -0.05 * weight && floor < 0.0);
+    assert!(((side + floor) / weight + 1.0).abs() < 5e-3);
+
+    let end = pipe.component.save().unwrap();
+    pipe.component.restore(&saved).unwrap();
+    pipe.run_to(1.0);
+    assert!(
+        pipe.component.save().unwrap() == end,
+        "other bits after restoring"
+    );
+}
