@@ -15,6 +15,8 @@ pub enum Quantity {
     Angle,
     /// Velocity [m/s].
     Velocity,
+    /// Angular velocity [rad/s].
+    AngularVelocity,
     /// Acceleration [m/s^2].
     Acceleration,
     /// Mass per time [kg/s].
@@ -69,6 +71,11 @@ const VELOCITY: &[Unit] = &[
     unit("cm/s", 1.0, 1e2),
     unit("km/h", 1.0, 3.6),
 ];
+const ANGULAR_VELOCITY: &[Unit] = &[
+    unit("rad/s", 1.0, 1.0),
+    unit("deg/s", std::f64::consts::PI, 180.0),
+    unit("rpm", std::f64::consts::PI, 30.0),
+];
 const ACCELERATION: &[Unit] = &[unit("m/s^2", 1.0, 1.0), unit("m/s2", 1.0, 1.0)];
 const MASS_RATE: &[Unit] = &[
     unit("kg/s", 1.0, 1.0),
@@ -99,11 +106,12 @@ const RATIO: &[Unit] = &[unit("1", 1.0, 1.0), unit("%", 1.0, 1e2)];
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Quantity; 10] = [
+    pub const ALL: [Quantity; 11] = [
         Quantity::Length,
         Quantity::Time,
         Quantity::Angle,
         Quantity::Velocity,
+        Quantity::AngularVelocity,
         Quantity::Acceleration,
         Quantity::MassRate,
         Quantity::Density,
@@ -118,6 +126,7 @@ impl Quantity {
             Quantity::Time => TIME,
             Quantity::Angle => ANGLE,
             Quantity::Velocity => VELOCITY,
+            Quantity::AngularVelocity => ANGULAR_VELOCITY,
             Quantity::Acceleration => ACCELERATION,
             Quantity::MassRate => MASS_RATE,
             Quantity::Density => DENSITY,
@@ -135,6 +144,7 @@ impl Quantity {
             Quantity::Time => "time",
             Quantity::Angle => "angle",
             Quantity::Velocity => "velocity",
+            Quantity::AngularVelocity => "angular velocity",
             Quantity::Acceleration => "acceleration",
             Quantity::MassRate => "mass rate",
             Quantity::Density => "density",
@@ -163,6 +173,7 @@ impl Quantity {
             Quantity::Time => "5 ms",
             Quantity::Angle => "25 deg",
             Quantity::Velocity => "0.5 m/s",
+            Quantity::AngularVelocity => "10 rpm",
             Quantity::Acceleration => "9.81 m/s^2",
             Quantity::MassRate => "0.5 kg/s",
             Quantity::Density => "2600 kg/m^3",
@@ -175,7 +186,10 @@ impl Quantity {
     /// What may be written: `a length: a number in m, or text with a unit (m, mm, cm, um, km)`.
     #[must_use]
     pub fn allowed(self) -> String {
-        let article = if matches!(self, Quantity::Angle | Quantity::Acceleration) {
+        let article = if matches!(
+            self,
+            Quantity::Angle | Quantity::AngularVelocity | Quantity::Acceleration
+        ) {
             "an"
         } else {
             "a"

@@ -3,8 +3,10 @@
 //! A wall point counts twice in every pair sum and takes the volume, pressure and stress of the particle that sees it
 //! (docs/theory.md, "Walls"): no distance to the wall is needed.
 
+mod mover;
 mod plate;
 mod points;
 
+pub use mover::{Mover, RigidMotion};
 pub use plate::Plate;
 pub use points::{GroupSpec, ROWS, WallPoints, box_points, plane_points, polyline_points};

@@ -170,6 +170,7 @@ mod tests {
             groups: vec![GroupSpec {
                 free_slip: true,
                 friction: 0.0,
+                moves: false,
                 wants_force: false,
             }],
             ..WallPoints::default()

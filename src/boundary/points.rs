@@ -14,6 +14,8 @@ pub struct GroupSpec {
     pub free_slip: bool,
     /// Coulomb friction mu_w >= 0 of a face with free slip, 0: none [1].
     pub friction: f64,
+    /// Whether its points move against the material, gates apart: then sliding along it counts as motion, too.
+    pub moves: bool,
     /// Whether somebody reads the force on it.
     pub wants_force: bool,
 }

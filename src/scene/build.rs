@@ -1,14 +1,16 @@
 //! Scene to what the solver runs: particles, wall points, devices. The last function that knows scenes.
 
-use crate::boundary::{GroupSpec, Plate, WallPoints, box_points, plane_points, polyline_points};
+use crate::boundary::{
+    GroupSpec, Mover, Plate, RigidMotion, WallPoints, box_points, plane_points, polyline_points,
+};
 use crate::math::{Geometry, Vector, add, dot, norm, scale};
 use crate::shape::lattice;
 use crate::solver::{Periodic, Plan, Scheme, Sink, Source};
-use crate::state::{GateState, Grains, InflowState, Random, RestState, State};
+use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
 use super::ghosts::ghost_depth;
 use super::steady_flow::steady_flow;
-use super::{Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, WallGeometry};
+use super::{Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, Wall, WallGeometry};
 
 /// The first D components of a point.
 #[must_use]
@@ -24,6 +26,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     let periodic = periodic::<D>(scene)?;
     let plates = plates::<D>(scene);
     let walls = walls::<D>(scene, &periodic);
+    let movers = movers(scene, &walls);
     let sources = scene.inflows.iter().map(|i| source(scene, i)).collect();
     let sinks = scene
         .outflows
@@ -48,6 +51,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         materials: scene.materials.iter().map(|m| m.material.clone()).collect(),
         walls,
         ghost_depth,
+        movers,
         plates,
         sources,
         sinks,
@@ -180,6 +184,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
         time: 0.0,
         initial_mass: grains.present_mass(),
         grains,
+        pose: PoseTimes::default(),
         gates,
         inflows: vec![InflowState::default(); scene.inflows.len()],
         drained: vec![0.0; scene.outflows.len()],
@@ -236,7 +241,7 @@ fn load_above(scene: &Scene, place: &Point, up: usize) -> f64 {
     load
 }
 
-fn group(scene: &Scene, slip: Slip, target: ForceTarget) -> GroupSpec {
+fn group(scene: &Scene, slip: Slip, moves: bool, target: ForceTarget) -> GroupSpec {
     let wants_force = scene
         .gauges
         .iter()
@@ -244,6 +249,7 @@ fn group(scene: &Scene, slip: Slip, target: ForceTarget) -> GroupSpec {
     GroupSpec {
         free_slip: slip != Slip::NoSlip,
         friction: slip.friction(),
+        moves,
         wants_force,
     }
 }
@@ -254,7 +260,7 @@ fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D>
     for (n, wall) in scene.walls.iter().enumerate() {
         points
             .groups
-            .push(group(scene, wall.slip, ForceTarget::Wall(n)));
+            .push(group(scene, wall.slip, wall.rigid, ForceTarget::Wall(n)));
         let velocity = narrow(&wall.velocity);
         match &wall.geometry {
             WallGeometry::Polyline {
@@ -280,7 +286,9 @@ fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D>
                 let normal = narrow(normal);
                 let sides = std::array::from_fn(|k| periodic.length[k] > 0.0);
                 let (lower, upper) = (narrow(&scene.domain.lower), narrow(&scene.domain.upper));
+                let motion = rigid_motion::<D>(wall);
                 for x in plane_points::<D>(&narrow(point), &normal, &lower, &upper, &sides, dp) {
+                    let velocity = motion.velocity_at(&x, 0.0);
                     points.push(x, velocity, normal, 1.0, n as u16);
                 }
             }
@@ -293,9 +301,30 @@ fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D>
     for (n, gate) in scene.gates.iter().enumerate() {
         points
             .groups
-            .push(group(scene, gate.slip, ForceTarget::Gate(n)));
+            .push(group(scene, gate.slip, false, ForceTarget::Gate(n)));
     }
     points
+}
+
+/// How a wall's material moves.
+fn rigid_motion<const D: usize>(wall: &Wall) -> RigidMotion<D> {
+    let (centre, rate, axis) = match wall.rotation {
+        Some(r) => (r.centre, r.rate, r.axis),
+        None => ([0.0; 3], 0.0, [0.0, 0.0, 1.0]),
+    };
+    RigidMotion {
+        velocity: narrow(&wall.velocity),
+        centre: narrow(&centre),
+        rate,
+        axis,
+    }
+}
+
+fn movers<const D: usize>(scene: &Scene, points: &WallPoints<D>) -> Vec<Mover<D>> {
+    let rigid = scene.walls.iter().enumerate().filter(|(_, w)| w.rigid);
+    rigid
+        .map(|(n, wall)| Mover::new(points, n as u16, rigid_motion(wall)))
+        .collect()
 }
 
 fn plates<const D: usize>(scene: &Scene) -> Vec<Plate<D>> {

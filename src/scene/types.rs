@@ -145,7 +145,7 @@ impl Slip {
     }
 }
 
-/// A fixed wall.
+/// A wall.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wall {
     /// Name in the scene file (force gauges refer to it).
@@ -154,8 +154,23 @@ pub struct Wall {
     pub geometry: WallGeometry,
     /// No slip or free slip.
     pub slip: Slip,
-    /// Velocity of the wall's material (a belt); the geometry stays [m/s].
+    /// Whether the wall moves as a whole; otherwise its surface slides along itself and the geometry stays.
+    pub rigid: bool,
+    /// Velocity of the wall's material [m/s].
     pub velocity: Point,
+    /// Rotation, if it turns.
+    pub rotation: Option<Rotation>,
+}
+
+/// How a wall turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotation {
+    /// Angular velocity [rad/s], anticlockwise in the plane, right-handed about `axis` in space.
+    pub rate: f64,
+    /// Centre of rotation at the start; it moves with the wall's velocity [m].
+    pub centre: Point,
+    /// Unit axis of rotation; z in the plane.
+    pub axis: Point,
 }
 
 /// Where a wall is.

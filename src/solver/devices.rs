@@ -1,4 +1,4 @@
-//! Gates, inflows and outflows: what moves, adds and takes out between two internal steps.
+//! Moving walls, gates, inflows and outflows: what moves, adds and takes out between two internal steps.
 
 use crate::math::{CHUNK, Vector, add, dot, norm, scale, sub};
 use crate::state::State;
@@ -38,6 +38,24 @@ impl<const D: usize> Source<D> {
 }
 
 impl<const D: usize> Solver<D> {
+    /// Moves the walls that move as a whole to the end of a step.
+    pub(super) fn move_walls(&mut self, state: &mut State<D>, dt: f64) {
+        if !self.movers.is_empty() {
+            state.pose.now += dt;
+            self.place_movers(state.pose.now);
+        }
+    }
+
+    /// Puts the walls that move as a whole where they are after having moved for `time` [s].
+    pub(super) fn place_movers(&mut self, time: f64) {
+        for mover in &self.movers {
+            mover.place(&mut self.walls, time);
+            for i in mover.range() {
+                self.periodic.wrap(&mut self.walls.position[i]);
+            }
+        }
+    }
+
     /// Moves plates towards the openings wanted; a plate that would run into material stops and says so.
     pub(super) fn move_gates(&mut self, state: &mut State<D>, wanted: &[f64], dt: f64) {
         for g in 0..self.plates.len() {

@@ -209,7 +209,13 @@ impl<const D: usize> Solver<D> {
             add_outer(&mut sums.moment, -1.0, &x, &g);
             let vx = 2.0 * dot(&v, &x);
             sums.pair_shear2 -= dissipation * vf * vx * vx / (r * r);
-            // Sliding along a free-slip face costs nothing: only the part it sees bounds the step.
+            // Sliding along a free-slip face costs nothing: only the part it sees bounds the step, unless the face
+            // itself comes along.
+            let v = if self.walls.groups[self.walls.group[wall as usize] as usize].moves {
+                sub(vi, &vw)
+            } else {
+                v
+            };
             sums.speed2 = sums.speed2.max(dot(&v, &v));
         }
         if !any {

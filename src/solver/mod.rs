@@ -37,7 +37,7 @@ pub use validity::Validity;
 
 use std::sync::Arc;
 
-use crate::boundary::{Plate, WallPoints};
+use crate::boundary::{Mover, Plate, WallPoints};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
 use crate::math::{Geometry, Vector, Workers, norm};
@@ -100,6 +100,8 @@ pub struct Plan<const D: usize> {
     pub walls: WallPoints<D>,
     /// Distance of each of these points behind its wall's surface [m]; only scheme `paper_a` needs it, else empty.
     pub ghost_depth: Vec<f64>,
+    /// Walls that move as a whole.
+    pub movers: Vec<Mover<D>>,
     /// Gates.
     pub plates: Vec<Plate<D>>,
     /// Inflows.
@@ -149,6 +151,7 @@ pub struct Solver<const D: usize> {
     ghost_depth: Vec<f64>,
     /// Number of wall groups before the gates'.
     fixed_groups: usize,
+    movers: Vec<Mover<D>>,
     plates: Vec<Plate<D>>,
     sources: Vec<Source<D>>,
     sinks: Vec<Sink<D>>,
@@ -188,6 +191,7 @@ impl<const D: usize> Solver<D> {
             materials,
             mut walls,
             ghost_depth,
+            movers,
             mut plates,
             sources,
             sinks,
@@ -195,6 +199,9 @@ impl<const D: usize> Solver<D> {
         let h = numerics.spacing * numerics.smoothing_ratio;
         let kernel = WendlandC2::new(h);
         let fixed_groups = walls.groups.len() - plates.len();
+        for mover in &movers {
+            mover.place(&mut walls, 0.0);
+        }
         let can_sleep = rest::can_sleep(&numerics, &walls);
         for plate in &mut plates {
             plate.append(&mut walls);
@@ -214,6 +221,7 @@ impl<const D: usize> Solver<D> {
             walls,
             ghost_depth,
             fixed_groups,
+            movers,
             plates,
             sources,
             sinks,
@@ -248,12 +256,14 @@ impl<const D: usize> Solver<D> {
 
     /// Derives lists, walls, pressures and viscosities of a restored state, with the bits they had.
     pub fn resume(&mut self, state: &State<D>) {
-        // Lists were built with the plates where they were then.
+        // Lists were built with plates and movers where they were then.
+        self.place_movers(state.pose.listed);
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.listed_opening, 0.0);
         }
         self.lists
             .build(&state.grains, &self.walls, &self.periodic, &self.workers);
+        self.place_movers(state.pose.now);
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.opening, gate.rate);
         }
@@ -286,6 +296,7 @@ impl<const D: usize> Solver<D> {
         self.add_reactions(state, dt);
         self.move_grains(state, dt)?;
         on_move(&self.before, &state.grains.position, &state.grains.mass);
+        self.move_walls(state, dt);
         self.move_gates(state, inputs.openings, dt);
         self.drain(state);
         self.keep_inside(state)?;
@@ -395,6 +406,11 @@ impl<const D: usize> Solver<D> {
             .zip(&state.gates)
             .map(|(p, g)| (g.opening - g.listed_opening).abs() * p.length)
             .fold(0.0, f64::max);
+        let moved = state.pose.now - state.pose.listed;
+        let travel = self
+            .movers
+            .iter()
+            .fold(travel, |t, m| t.max(m.travel(moved)));
         if renew
             || self.lists.outdated(
                 &state.grains,
@@ -412,6 +428,7 @@ impl<const D: usize> Solver<D> {
 
     fn renew_lists(&mut self, state: &mut State<D>) {
         self.lists.sort(&mut state.grains, &self.periodic);
+        state.pose.listed = state.pose.now;
         for gate in &mut state.gates {
             gate.listed_opening = gate.opening;
         }

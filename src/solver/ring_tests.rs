@@ -4,7 +4,7 @@ use super::numerics::YieldForm;
 use super::*;
 use crate::boundary::{GroupSpec, polyline_points};
 use crate::math::dot;
-use crate::state::{Grains, Random};
+use crate::state::{Grains, PoseTimes, Random};
 
 const DP: f64 = 0.01;
 const RADIUS: usize = 20;
@@ -57,6 +57,7 @@ fn column(
     walls.groups.push(GroupSpec {
         free_slip: false,
         friction: 0.0,
+        moves: false,
         wants_force: false,
     });
     if floor {
@@ -78,6 +79,7 @@ fn column(
         walls,
         ghost_depth: Vec::new(),
         plates: Vec::new(),
+        movers: Vec::new(),
         sources: Vec::new(),
         sinks: Vec::new(),
     };
@@ -86,6 +88,7 @@ fn column(
         initial_mass: grains.present_mass(),
         grains,
         gates: Vec::new(),
+        pose: PoseTimes::default(),
         inflows: Vec::new(),
         drained: Vec::new(),
         impulse: vec![[0.0; 2]],

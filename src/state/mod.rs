@@ -21,6 +21,8 @@ pub struct State<const D: usize> {
     pub time: f64,
     /// The particles.
     pub grains: Grains<D>,
+    /// Where walls are that move as a whole.
+    pub pose: PoseTimes,
     /// One per gate of the scene.
     pub gates: Vec<GateState>,
     /// One per inflow of the scene.
@@ -58,6 +60,15 @@ pub struct RestState<const D: usize> {
     /// Asleep: mean force of the quiet steps on each wall, then each gate [N]. Before: its impulse over them so far [N s].
     #[serde(with = "flat")]
     pub force: Vec<Vector<D>>,
+}
+
+/// How long walls that move as a whole have moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PoseTimes {
+    /// Until now [s].
+    pub now: f64,
+    /// Until the neighbour lists were built [s].
+    pub listed: f64,
 }
 
 /// Where a gate is.

@@ -7,6 +7,7 @@ mod axisymmetric;
 mod collapse;
 mod conservation;
 mod incline;
+mod moving_walls;
 mod paper_a;
 mod rest;
 mod rheology;

@@ -48,14 +48,18 @@ impl Lift<'_> {
         })
     }
 
-    /// Exactly one of box, polygon and column, as the dimension allows.
+    /// Exactly one of box, polygon, circle and column, as the dimension allows.
     fn shape(&mut self, entry: &Entry<RawBody>, raw: &RawBody) -> Option<Shape> {
         self.check_one_of(
             &entry.place,
             &raw.given,
-            &["box", "polygon", "column"],
+            &["box", "polygon", "circle", "column"],
             "box = { lower = [0, 0], upper = [0.1, 0.1] }",
         )?;
+        if let Some(circle) = &raw.circle {
+            let points = self.circle(circle)?;
+            return Some(Shape::Polygon { points });
+        }
         match (&raw.r#box, &raw.polygon, &raw.column) {
             (Some(r#box), _, _) => {
                 let (lower, upper) = self.raw_box(r#box)?;

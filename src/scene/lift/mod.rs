@@ -4,6 +4,7 @@
 //! the same. A scene is built only if nothing was reported.
 
 mod bodies;
+mod circle;
 mod clearance;
 mod devices;
 mod domain;
@@ -11,6 +12,7 @@ mod friction;
 mod gauges;
 mod geometry;
 mod material;
+mod motion;
 mod numerics;
 mod paper_a;
 mod profile;

@@ -180,6 +180,9 @@ impl Lift<'_> {
         {
             return Some("a wall that moves");
         }
+        if wall.angular_velocity.is_some() {
+            return Some("a wall that turns");
+        }
         let corners: Vec<&Vec<f64>> = match &wall.polyline {
             Some(line) => line.value.0.iter().map(|c| &c.value.values).collect(),
             None => return None,

@@ -1,7 +1,7 @@
 //! Walls and gates.
 
 use super::geometry::Region;
-use super::{Lift, dot, length, minus, normalized};
+use super::{Lift, length, minus, normalized};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
 use crate::scene::types::{Gate, Point, Slip, Wall, WallGeometry};
 
@@ -70,28 +70,24 @@ impl Lift<'_> {
             raw.wall_friction.as_ref(),
             &raw.given,
         );
-        let velocity = match &raw.velocity {
-            Some(at) => {
-                let velocity = self.vector(at)?;
-                self.check_belt(&at.place, &geometry, velocity);
-                velocity
-            }
-            None => [0.0; 3],
-        };
+        let motion = self.motion(entry, raw, &geometry);
+        let motion = motion?;
         Some(Wall {
             name: entry.name.clone(),
             geometry,
             slip: slip?,
-            velocity,
+            rigid: motion.rigid,
+            velocity: motion.velocity,
+            rotation: motion.rotation,
         })
     }
 
-    /// Exactly one of polyline, box and plane.
+    /// Exactly one of polyline, circle, box and plane.
     fn wall_geometry(&mut self, entry: &Entry<RawWall>, raw: &RawWall) -> Option<WallGeometry> {
         self.check_one_of(
             &entry.place,
             &raw.given,
-            &["polyline", "box", "plane"],
+            &["polyline", "circle", "box", "plane"],
             "polyline = [[0, 0], [1, 0]]",
         )?;
         if let (Some(closed), false) = (&raw.closed, raw.given.contains(&"polyline")) {
@@ -104,6 +100,20 @@ impl Lift<'_> {
         }
         let (geometry, solid) = if raw.polyline.is_some() {
             self.polyline(raw)?
+        } else if let Some(circle) = &raw.circle {
+            let points = self.circle(circle)?;
+            let next = |i: usize| points[(i + 1) % points.len()];
+            let segments = (0..points.len()).map(|i| (points[i], next(i))).collect();
+            let heights: Vec<f64> = points
+                .iter()
+                .map(|&[x, y]| self.height([x, y, 0.0]))
+                .collect();
+            self.heights.extend(heights);
+            let closed = true;
+            (
+                WallGeometry::Polyline { points, closed },
+                Solid::Polyline(segments),
+            )
         } else if let Some(r#box) = &raw.r#box {
             let (lower, upper) = self.raw_box(r#box)?;
             self.check_inside(&r#box.place, lower);
@@ -157,31 +167,6 @@ impl Lift<'_> {
         }
         let geometry = WallGeometry::Polyline { points, closed };
         Some((geometry, Solid::Polyline(segments)))
-    }
-
-    /// The velocity of a wall lies in its surface.
-    fn check_belt(&mut self, place: &Place, geometry: &WallGeometry, velocity: Point) {
-        let speed = length(velocity);
-        let across = match geometry {
-            WallGeometry::Plane { normal, .. } => dot(velocity, *normal).abs(),
-            WallGeometry::Box { .. } => speed,
-            WallGeometry::Polyline { points, .. } => points
-                .windows(2)
-                .filter_map(|w| {
-                    let along = [w[1][0] - w[0][0], w[1][1] - w[0][1], 0.0];
-                    let [x, y, _] = normalized(along)?;
-                    Some((velocity[0] * y - velocity[1] * x).abs())
-                })
-                .fold(0.0, f64::max),
-        };
-        if across > 1e-6 * speed {
-            self.problems.report(
-                place,
-                format!("a velocity with {across} m/s across the surface"),
-                "a velocity along the wall's surface (a belt): straight polylines and planes only",
-                "turn it along the wall; for a wall that moves as a whole use a gate",
-            );
-        }
     }
 
     /// No wall lies across a periodic side: material must pass there.

@@ -20,4 +20,6 @@ pub(super) use values::{Angle, Density, Length, Pressure, Ratio, Text};
 use declare::{choice, table, tagged};
 use range::Range;
 use read::{Field, KeySpec, Need, Node, refuse_unknown};
-use values::{Compressibility, Flag, MassRate, Name, Speed, Time, Whole, choose, read_word};
+use values::{
+    AngularSpeed, Compressibility, Flag, MassRate, Name, Speed, Time, Whole, choose, read_word,
+};

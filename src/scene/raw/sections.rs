@@ -255,7 +255,7 @@ choice! {
 }
 
 table! {
-    /// Material that is there at the start. Exactly one of box, polygon and column says where.
+    /// Material that is there at the start. Exactly one of box, polygon, circle and column says where.
     RawBody {
         /// Name of its material.
         required material: Text;
@@ -263,6 +263,8 @@ table! {
         optional r#box: RawBox;
         /// Planar: corners of a simple polygon, in order.
         optional polygon: List<Coordinates<Length>>;
+        /// Planar: a disc.
+        optional circle: RawCircle;
         /// Space: an upright round column.
         optional column: RawColumn;
         /// Fills the shape only below this height: a reservoir filled to a level.
@@ -317,12 +319,14 @@ choice! {
 }
 
 table! {
-    /// A fixed wall. Exactly one of polyline, box and plane says where.
+    /// A wall. Exactly one of polyline, circle, box and plane says where.
     RawWall {
         /// Planar: a chain of points with the material on its left; the wall lies on its right, four particle rows deep.
         optional polyline: List<Coordinates<Length>>;
         /// Whether the polyline's last point joins the first.
         optional closed: Flag;
+        /// Planar: a round wall with the material inside, a drum.
+        optional circle: RawCircle;
         /// A solid box, an obstacle.
         optional r#box: RawBox;
         /// A plane, with material on the side of its normal.
@@ -331,8 +335,36 @@ table! {
         optional slip: SlipWord, default "no_slip";
         /// Coefficient mu_w of slip = "friction", tan of the wall friction angle.
         optional wall_friction: Ratio, in Range::from(0.0);
-        /// Velocity of the wall's surface, along the surface: a belt. The wall itself stays.
+        /// What velocity and angular_velocity move.
+        optional motion: MotionWord, default "belt";
+        /// Velocity. Of a belt: along its surface. Of a rigid wall: any, of a plane along its normal.
         optional velocity: Coordinates<Speed>;
+        /// Rate of turning about `centre`: anticlockwise in the plane, in space right-handed about `axis`. Rigid walls, and belts that are planes across `axis`.
+        optional angular_velocity: AngularSpeed;
+        /// Centre of rotation; it moves with `velocity`.
+        optional centre: Coordinates<Length>;
+        /// In space: axis of rotation, of any length.
+        optional axis: Coordinates<Ratio>;
+    }
+}
+
+choice! {
+    /// What moves of a wall that has a velocity.
+    MotionWord {
+        /// its surface slides along itself and the wall stays where it is: a conveyor belt
+        "belt" => Belt,
+        /// the wall moves as a whole: a piston, a falling floor, a drum
+        "rigid" => Rigid,
+    }
+}
+
+table! {
+    /// A circle.
+    RawCircle {
+        /// Its centre.
+        required centre: Coordinates<Length>;
+        /// Its radius.
+        required radius: Length, in Range::above(0.0);
     }
 }
 

@@ -86,6 +86,8 @@ scalars! {
     Angle => Quantity::Angle;
     /// A speed [m/s].
     Speed => Quantity::Velocity;
+    /// An angular velocity [rad/s].
+    AngularSpeed => Quantity::AngularVelocity;
     /// An acceleration [m/s^2].
     Acceleration => Quantity::Acceleration;
     /// Mass per time [kg/s].

@@ -1,0 +1,48 @@
+//! Circles: polygons whose sides are two spacings long.
+
+use super::Lift;
+use crate::scene::raw::{At, RawCircle};
+
+impl Lift<'_> {
+    /// Corners of a circle, anticlockwise: its inside is on their left.
+    pub(super) fn circle(&mut self, at: &At<RawCircle>) -> Option<Vec<[f64; 2]>> {
+        if !self.planar() || self.axisymmetric() {
+            self.problems.report(
+                &at.place,
+                format!("a circle in {}", self.kind()),
+                "circles only where dimension = 2",
+                "use box, column, polyline or plane, or set dimension = 2",
+            );
+            return None;
+        }
+        let centre = self.vector(at.value.centre.as_ref()?)?;
+        let radius = at.value.radius.as_ref()?.value.0;
+        let spacing = self.spacing?;
+        let place = &at.value.radius.as_ref()?.place;
+        if radius < 4.0 * spacing || radius > 300.0 * spacing {
+            self.problems.report(
+                place,
+                format!("{radius} m"),
+                format!(
+                    "4 to 300 spacings, {} to {} m",
+                    4.0 * spacing,
+                    300.0 * spacing
+                ),
+                "choose another radius, refine or coarsen numerics.spacing",
+            );
+            return None;
+        }
+        for shift in [-radius, radius] {
+            let corner = [centre[0] + shift, centre[1] + shift, 0.0];
+            if !self.check_inside(place, corner) {
+                return None;
+            }
+        }
+        let count = (std::f64::consts::PI * radius / spacing).round();
+        let corner = |n: usize| {
+            let (sin, cos) = (std::f64::consts::TAU * n as f64 / count).sin_cos();
+            [centre[0] + radius * cos, centre[1] + radius * sin]
+        };
+        Some((0..count as usize).map(corner).collect())
+    }
+}

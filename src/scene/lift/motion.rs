@@ -1,0 +1,202 @@
+//! How walls move: belts, whose surface slides along itself, and rigid walls, which move as a whole.
+
+use super::{Lift, dot, length};
+use crate::scene::raw::{Entry, MotionWord, Place, RawWall};
+use crate::scene::types::{Point, Rotation, WallGeometry};
+
+/// Motion of a wall.
+pub(super) struct Motion {
+    pub(super) rigid: bool,
+    pub(super) velocity: Point,
+    pub(super) rotation: Option<Rotation>,
+}
+
+impl Lift<'_> {
+    /// Motion of a wall of this geometry.
+    pub(super) fn motion(
+        &mut self,
+        entry: &Entry<RawWall>,
+        raw: &RawWall,
+        geometry: &WallGeometry,
+    ) -> Option<Motion> {
+        let rigid = raw.motion.as_ref()?.value == MotionWord::Rigid;
+        let velocity = match &raw.velocity {
+            Some(at) => self.vector(at)?,
+            None => [0.0; 3],
+        };
+        let rotation = self.rotation(raw)?;
+        if let Some(at) = &raw.velocity {
+            if rigid {
+                self.check_rigid(&at.place, geometry, velocity);
+            } else {
+                self.check_belt(&at.place, geometry, velocity);
+            }
+        }
+        if let (Some(at), Some(rotation)) = (&raw.angular_velocity, rotation) {
+            self.check_turning(&at.place, geometry, rigid, rotation);
+        }
+        let turns = raw.given.contains(&"angular_velocity");
+        if rigid && length(velocity) == 0.0 && !turns {
+            self.problems.report(
+                &entry.place,
+                "motion = \"rigid\" without velocity or angular_velocity",
+                "one of them, not 0",
+                "add for example velocity = [0, \"-1 mm/s\"], or delete motion",
+            );
+        }
+        Some(Motion {
+            rigid,
+            velocity,
+            rotation,
+        })
+    }
+
+    /// angular_velocity with its centre, and in space its axis; `Some(None)` if the wall does not turn.
+    fn rotation(&mut self, raw: &RawWall) -> Option<Option<Rotation>> {
+        let Some(rate) = &raw.angular_velocity else {
+            for place in [
+                raw.centre.as_ref().map(|c| &c.place),
+                raw.axis.as_ref().map(|a| &a.place),
+            ] {
+                if let Some(place) = place.filter(|_| !raw.given.contains(&"angular_velocity")) {
+                    self.problems.report(
+                        place,
+                        "a wall that does not turn",
+                        "centre and axis only beside angular_velocity",
+                        "add for example angular_velocity = \"5 rpm\", or delete it",
+                    );
+                }
+            }
+            return Some(None);
+        };
+        if self.axisymmetric() {
+            self.problems.report(
+                &rate.place,
+                "a wall that turns in an axisymmetric scene",
+                "walls without rotation: nothing swirls about the axis there",
+                "delete it, or set dimension = 3",
+            );
+            return None;
+        }
+        let Some(centre) = &raw.centre else {
+            if !raw.given.contains(&"centre") {
+                self.problems.report(
+                    &rate.place,
+                    "angular_velocity without a centre",
+                    "angular_velocity beside the centre of rotation",
+                    "add for example centre = [0, 0]",
+                );
+            }
+            return None;
+        };
+        let axis = match (&raw.axis, self.planar()) {
+            (None, true) => Some([0.0, 0.0, 1.0]),
+            (Some(axis), false) => self.direction(axis),
+            (Some(axis), true) => {
+                self.problems.report(
+                    &axis.place,
+                    "an axis in a planar scene",
+                    "axis only where dimension = 3; in the plane walls turn about z",
+                    "delete it, or set dimension = 3",
+                );
+                None
+            }
+            (None, false) => {
+                if !raw.given.contains(&"axis") {
+                    self.problems.report(
+                        &rate.place,
+                        "angular_velocity without an axis",
+                        "in space angular_velocity beside the axis of rotation",
+                        "add for example axis = [0, 0, 1]",
+                    );
+                }
+                None
+            }
+        };
+        let centre = self.vector(centre);
+        Some(Some(Rotation {
+            rate: rate.value.0,
+            centre: centre?,
+            axis: axis?,
+        }))
+    }
+
+    /// A plane fills the domain's section, so that it can move along its normal only; rings move along the axis.
+    fn check_rigid(&mut self, place: &Place, geometry: &WallGeometry, velocity: Point) {
+        if let WallGeometry::Plane { normal, .. } = geometry {
+            let across = dot(velocity, *normal);
+            let along: Point = std::array::from_fn(|k| velocity[k] - across * normal[k]);
+            if length(along) > 1e-6 * length(velocity) {
+                self.problems.report(
+                    place,
+                    format!(
+                        "a rigid plane that moves along itself at {} m/s",
+                        length(along)
+                    ),
+                    "a velocity along the plane's normal",
+                    "turn it, use motion = \"belt\", or use a polyline or a box",
+                );
+            }
+        }
+        if self.axisymmetric() && velocity[0] != 0.0 {
+            self.problems.report(
+                place,
+                format!("a radial velocity of {} m/s", velocity[0]),
+                "a velocity along the axis, [0, v], in an axisymmetric scene",
+                "set the first component to 0",
+            );
+        }
+    }
+
+    /// A belt that turns is a plane across its axis; planes cannot turn otherwise.
+    fn check_turning(
+        &mut self,
+        place: &Place,
+        geometry: &WallGeometry,
+        rigid: bool,
+        rotation: Rotation,
+    ) {
+        let table = match geometry {
+            WallGeometry::Plane { normal, .. } => dot(*normal, rotation.axis).abs() > 1.0 - 1e-9,
+            _ => false,
+        };
+        let plane = matches!(geometry, WallGeometry::Plane { .. });
+        if plane == rigid || (!rigid && !table) {
+            self.problems.report(
+                place,
+                if rigid {
+                    "a rigid plane that turns"
+                } else {
+                    "a belt that turns"
+                },
+                "rotation of rigid polylines, circles and boxes, and of belts that are planes across the axis",
+                "set motion = \"rigid\" (planes: \"belt\", with axis along the normal)",
+            );
+        }
+    }
+
+    /// The velocity of a belt lies in its surface.
+    fn check_belt(&mut self, place: &Place, geometry: &WallGeometry, velocity: Point) {
+        let speed = length(velocity);
+        let across = match geometry {
+            WallGeometry::Plane { normal, .. } => dot(velocity, *normal).abs(),
+            WallGeometry::Box { .. } => speed,
+            WallGeometry::Polyline { points, .. } => points
+                .windows(2)
+                .filter_map(|w| {
+                    let along = [w[1][0] - w[0][0], w[1][1] - w[0][1], 0.0];
+                    let [x, y, _] = super::normalized(along)?;
+                    Some((velocity[0] * y - velocity[1] * x).abs())
+                })
+                .fold(0.0, f64::max),
+        };
+        if across > 1e-6 * speed {
+            self.problems.report(
+                place,
+                format!("a velocity with {across} m/s across the surface"),
+                "a velocity along the wall's surface (a belt): straight polylines and planes only",
+                "turn it along the wall; for a wall that moves as a whole set motion = \"rigid\"",
+            );
+        }
+    }
+}
