@@ -11,6 +11,9 @@ use super::{Reading, Validity, View, along};
 /// Shepard sum of material below which a place counts as dry: a lone grain at the place itself gives 0.2.
 const DRY: f64 = 0.05;
 
+/// Places on a line are this many spacings apart: finer than the kernel, so that no crossing is stepped over.
+const STEP: f64 = 0.25;
+
 /// A line along which depth is measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthLine<const D: usize> {
@@ -37,26 +40,11 @@ impl<const D: usize> DepthLine<D> {
 
     /// Depth [m], or why there is none.
     pub(super) fn depth(&self, view: &View<D>) -> Result<f64, Validity> {
-        if view.is_outside(&self.foot) {
-            return Err(Validity::Outside);
-        }
-        if view.is_covered(&along(&self.foot, &self.up, view.spacing)) {
-            return Err(Validity::Blocked);
-        }
-        // A quarter of a spacing is finer than the kernel: no crossing is stepped over.
-        let step = 0.25 * view.spacing;
-        let count = (self.length / step).ceil().max(1.0) as usize;
-        let height = |k: usize| (k as f64 * step).min(self.length);
-        let Some(filled) = self.highest_filled(view, count, &height) else {
-            return Err(Validity::Empty);
-        };
-        if view.material_sum(&along(&self.foot, &self.up, height(filled))) < DRY {
-            return Err(Validity::Empty);
-        }
-        if filled == count {
+        let filled = self.filled(view)?;
+        if filled == self.count(view) {
             return Ok(self.length);
         }
-        let (mut low, mut high) = (height(filled), height(filled + 1));
+        let (mut low, mut high) = (self.height(view, filled), self.height(view, filled + 1));
         // 40 halvings take a quarter of a spacing below any rounding that matters.
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
@@ -69,18 +57,46 @@ impl<const D: usize> DepthLine<D> {
         Ok(low)
     }
 
-    /// Largest k from `count` down to 0 with S >= 0.5 at `height(k)`.
+    /// Whether the depth is at least one spacing, for less than what the depth itself costs.
+    pub(super) fn is_deep(&self, view: &View<D>) -> bool {
+        self.filled(view)
+            .is_ok_and(|k| self.height(view, k) >= view.spacing)
+    }
+
+    /// Number of the highest place with S >= 0.5, or why there is none.
+    fn filled(&self, view: &View<D>) -> Result<usize, Validity> {
+        if view.is_outside(&self.foot) {
+            return Err(Validity::Outside);
+        }
+        if view.is_covered(&along(&self.foot, &self.up, view.spacing)) {
+            return Err(Validity::Blocked);
+        }
+        let filled = self.highest_filled(view).ok_or(Validity::Empty)?;
+        let at = along(&self.foot, &self.up, self.height(view, filled));
+        if view.material_sum(&at) < DRY {
+            return Err(Validity::Empty);
+        }
+        Ok(filled)
+    }
+
+    /// Number of the line's upper end.
+    fn count(&self, view: &View<D>) -> usize {
+        (self.length / (STEP * view.spacing)).ceil().max(1.0) as usize
+    }
+
+    /// Height of a place along the line [m].
+    fn height(&self, view: &View<D>, k: usize) -> f64 {
+        (k as f64 * STEP * view.spacing).min(self.length)
+    }
+
+    /// Number of the highest place with S >= 0.5.
     ///
     /// Goes down in blocks of a kernel radius and passes over those that no material reaches, where S is 0.
-    fn highest_filled(
-        &self,
-        view: &View<D>,
-        count: usize,
-        height: &impl Fn(usize) -> f64,
-    ) -> Option<usize> {
+    fn highest_filled(&self, view: &View<D>) -> Option<usize> {
         let support = view.kernel.support();
-        let block = ((support / (0.25 * view.spacing)) as usize).max(1);
-        let mut top = count + 1;
+        let height = |k| self.height(view, k);
+        let block = ((support / (STEP * view.spacing)) as usize).max(1);
+        let mut top = self.count(view) + 1;
         while top > 0 {
             let bottom = top.saturating_sub(block);
             let middle = 0.5 * (height(bottom) + height(top));
@@ -233,16 +249,12 @@ mod tests {
                 length,
             };
             bed.look(|view| {
-                let count = (length / (0.25 * view.spacing)).ceil() as usize;
-                let height = |k: usize| (k as f64 * 0.25 * view.spacing).min(length);
-                let everywhere = (0..=count)
+                let everywhere = (0..=line.count(view))
                     .rev()
-                    .find(|&k| line.fill(view, height(k)) >= 0.5);
-                assert_eq!(
-                    line.highest_filled(view, count, &height),
-                    everywhere,
-                    "line {k}"
-                );
+                    .find(|&k| line.fill(view, line.height(view, k)) >= 0.5);
+                assert_eq!(line.highest_filled(view), everywhere, "line {k}");
+                let deep = line.depth(view).is_ok_and(|depth| depth >= view.spacing);
+                assert_eq!(line.is_deep(view), deep, "line {k}");
             });
         }
     }

@@ -67,7 +67,7 @@ impl<const D: usize> Front<D> {
                 up: self.up,
                 length: highest + 2.0 * view.spacing,
             };
-            line.depth(view).is_ok_and(|depth| depth >= view.spacing)
+            line.is_deep(view)
         };
         let step = 0.5 * view.spacing;
         let start = outermost + 2.0 * step;

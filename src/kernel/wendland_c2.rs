@@ -42,6 +42,20 @@ impl<const D: usize> WendlandC2<D> {
         2.0 * self.h
     }
 
+    /// 1/(2 h) [1/m].
+    #[inline(always)]
+    #[must_use]
+    pub fn inverse_support(&self) -> f64 {
+        self.inverse_2h
+    }
+
+    /// s with F(r) = -s (1 - q/2)^3 [1/m^(D+2)].
+    #[inline(always)]
+    #[must_use]
+    pub fn slope(&self) -> f64 {
+        self.slope
+    }
+
     /// W(r) [1/m^D].
     #[inline(always)]
     #[must_use]

@@ -33,38 +33,52 @@ pub fn grain_compression<const D: usize>(r: f64, b: f64, q: f64) -> f64 {
 
 /// Largest root x for phi = phi_max - (phi_max - phi_min) I, r >= 0 and B > 0.
 ///
-/// The left side grows from 0 at max(1, r), so the root exists and is unique there. Newton from an upper bound: the
-/// logarithm of the left over the right side is concave and rising on the branch, and every iterate is kept above
-/// max(1, r), so it cannot leave it.
+/// The left side grows from 0 at max(1, r), so the root exists and is unique there. Newton from the root without the
+/// smaller terms; the logarithm of the left over the right side is concave and rising on the branch, and every iterate
+/// is kept above max(1, r), so it cannot leave it. It stops when the step is so small that the next would be rounding.
 fn unclamped<const D: usize>(r: f64, b: f64) -> f64 {
     let low = r.max(1.0);
     // Work with y = x - low > 0 to keep digits when x is close to 1.
     let (c1, c2) = (low - 1.0, low - r);
+    // (y + c1)(y + c2)^2 = B low^2 but for factors that matter at large B; one of c1, c2 is 0.
+    let right = b * low * low;
+    let both = rough_cube_root(right);
+    let near = if c1 > 0.0 {
+        (right / (c1 + both)).sqrt()
+    } else {
+        right / ((c2 + both) * (c2 + both))
+    };
     // Large B: x = B in the plane, B^(3/2) in space.
     let far = if D == 2 {
         b
     } else {
         b * (1.0 + 1.5 * b.sqrt())
     };
-    let mut y = low * (1.5 * (b.cbrt() + b.sqrt()) + far);
+    let mut y = near + far;
     for _ in 0..60 {
         let x = low + y;
         let (right, slope) = if D == 2 {
             (b * x * x, 2.0 * b * x)
         } else {
-            (b * x.powf(7.0 / 3.0), 7.0 / 3.0 * b * x.powf(4.0 / 3.0))
+            let power = x * x.cbrt();
+            (b * x * power, 7.0 / 3.0 * b * power)
         };
         let (u, v) = (y + c1, y + c2);
         let f = u * v * v - right;
         let df = v * v + 2.0 * u * v - slope;
         let next = if df > 0.0 { y - f / df } else { 0.5 * y };
         let next = if next > 0.0 { next } else { 0.5 * y };
-        if (next - y).abs() <= 1e-14 * (next + low * 1e-6) {
+        if (next - y).abs() <= 1e-8 * next {
             return low + next;
         }
         y = next;
     }
     low + y
+}
+
+/// Cube root of a positive number within 6 %: the exponent divided by three.
+fn rough_cube_root(a: f64) -> f64 {
+    f64::from_bits(a.to_bits() / 3 + (1023 - 1023 / 3) * (1 << 52))
 }
 
 #[cfg(test)]
@@ -98,6 +112,15 @@ mod tests {
                     assert!(res.abs() < 1e-9 + 4.0 * lost, "r {r} B {b}: {res}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn the_rough_cube_root_is_within_its_bound() {
+        for k in -200..200 {
+            let a = 10f64.powf(0.05 * f64::from(k));
+            let ratio = rough_cube_root(a) / a.cbrt();
+            assert!((ratio - 1.0).abs() < 0.06, "{a}: {ratio}");
         }
     }
 

@@ -7,11 +7,16 @@
 )]
 
 mod geometry;
+mod lanes;
 mod sum;
 mod workers;
 
 pub use geometry::Geometry;
-pub use sum::{dot_rows, maximum, sum_rows};
+#[cfg(target_arch = "x86_64")]
+pub use lanes::Inlined;
+pub(crate) use lanes::in_lanes;
+pub use lanes::{Arch, Four, LANES, Lanes, Portable, Quad};
+pub use sum::{maximum, sum_rows};
 pub use workers::{CHUNK, Workers};
 
 /// A vector of D components.

@@ -1,12 +1,6 @@
 //! Sums in a fixed order: partial sums of fixed chunks, added up one after the other, whatever the number of threads.
 
-use super::{CHUNK, Vector, Workers, dot};
-
-/// sum_i a_i . b_i, the same bits for any number of threads.
-#[must_use]
-pub fn dot_rows<const D: usize>(workers: &Workers, a: &[Vector<D>], b: &[Vector<D>]) -> f64 {
-    sum_rows(workers, a.len(), |i| dot(&a[i], &b[i]))
-}
+use super::{CHUNK, Workers};
 
 /// sum_i f(i) for i < n, the same bits for any number of threads.
 #[must_use]

@@ -155,6 +155,67 @@ impl Workers {
         }
     }
 
+    /// As [`Workers::blocks_read`]; the sum of what f returns for the chunks, added in their order.
+    pub fn blocks_sum<B: Sync, T: Send>(
+        &self,
+        blocks: &[B],
+        out: &mut [T],
+        f: impl Fn(&B, usize, &mut [T]) -> f64 + Sync,
+    ) -> f64 {
+        match self.pool_for(out.len()) {
+            None => blocks
+                .iter()
+                .zip(out.chunks_mut(CHUNK))
+                .enumerate()
+                .fold(0.0, |sum, (c, (b, part))| sum + f(b, c * CHUNK, part)),
+            Some(pool) => {
+                let parts: Vec<f64> = pool.run(|| {
+                    blocks
+                        .par_iter()
+                        .zip(out.par_chunks_mut(CHUNK))
+                        .enumerate()
+                        .map(|(c, (b, part))| f(b, c * CHUNK, part))
+                        .collect()
+                });
+                parts.iter().fold(0.0, |sum, part| sum + part)
+            }
+        }
+    }
+
+    /// a[i] and b[i] written by f(i, &mut a[i], &mut b[i]), which returns what is to be summed; added chunk by chunk.
+    pub fn both<A: Send, B: Send, const K: usize>(
+        &self,
+        a: &mut [A],
+        b: &mut [B],
+        f: impl Fn(usize, &mut A, &mut B) -> [f64; K] + Sync,
+    ) -> [f64; K] {
+        let chunk = |c: usize, (a, b): (&mut [A], &mut [B])| {
+            let mut sum = [0.0; K];
+            for (k, (a, b)) in a.iter_mut().zip(b).enumerate() {
+                sum = crate::math::add(&sum, &f(c * CHUNK + k, a, b));
+            }
+            sum
+        };
+        let added = |sum: [f64; K], part: [f64; K]| crate::math::add(&sum, &part);
+        match self.pool_for(a.len()) {
+            None => a
+                .chunks_mut(CHUNK)
+                .zip(b.chunks_mut(CHUNK))
+                .enumerate()
+                .fold([0.0; K], |sum, (c, parts)| added(sum, chunk(c, parts))),
+            Some(pool) => {
+                let parts: Vec<[f64; K]> = pool.run(|| {
+                    a.par_chunks_mut(CHUNK)
+                        .zip(b.par_chunks_mut(CHUNK))
+                        .enumerate()
+                        .map(|(c, parts)| chunk(c, parts))
+                        .collect()
+                });
+                parts.into_iter().fold([0.0; K], added)
+            }
+        }
+    }
+
     /// Sum of f over the chunks of 0..n, added in chunk order.
     #[must_use]
     pub fn chunk_sums(&self, n: usize, f: impl Fn(Range<usize>) -> f64 + Sync) -> f64 {

@@ -147,7 +147,6 @@ impl<const D: usize> Solver<D> {
         if !self.walls.groups.iter().any(|g| g.wants_force) {
             return;
         }
-        let tau = &self.viscous.tau;
         let share = self.numerics.pair_viscosity_share;
         let support = self.kernel.support();
         let dissipation = 2.0 * (D as f64 + 2.0);
@@ -155,6 +154,10 @@ impl<const D: usize> Solver<D> {
             for row in 0..block.rows() {
                 let i = b * CHUNK + row;
                 let (xi, vi) = (&state.grains.position[i], &self.viscous.velocity[i]);
+                if block.wall_row(row).is_empty() {
+                    continue;
+                }
+                let tau = self.viscous.stress(i);
                 for &w in block.wall_row(row) {
                     let group = self.walls.group[w as usize] as usize;
                     let weight = self.walls.weight[w as usize];
@@ -175,7 +178,7 @@ impl<const D: usize> Solver<D> {
                         projection.map_or(a, |n| scale(dot(&n, &a), &n))
                     };
                     let mut force = scale(-2.0 * self.normal_pressure()[i], &g);
-                    force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau[i], &g))));
+                    force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau, &g))));
                     let pg = seen(g);
                     let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];
                     let drag =

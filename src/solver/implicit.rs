@@ -2,27 +2,32 @@
 //! blocks, started from the last step's change. With the exact yield it is solved a few times a step, each time with
 //! the stress of the last projection beside it (`plastic`).
 
-use crate::math::{Tensor, Vector, apply, dot, dot_rows, sub, sum_rows};
+use crate::math::{Tensor, Vector, apply, dot, sub, sum_rows};
 use crate::state::State;
 
 use super::lists::mean;
 use super::numerics::YieldForm;
+use super::record::Record;
 use super::{Solver, SolverError};
 
-/// Work arrays of the solve.
+/// Work arrays of the solve. A velocity and the stress that is linear in it, (1 - share) 2 eta e(v), stand side by side.
 #[derive(Debug, Default)]
 pub(super) struct Viscous<const D: usize> {
-    /// Stress that is linear in the velocity, (1 - share) 2 eta e(v), kept up to date with the velocity [Pa].
-    pub(super) linear: Vec<Tensor<D>>,
-    /// Whole stress of the adjoint form; between solves that of the last one [Pa].
-    pub(super) tau: Vec<Tensor<D>>,
-    /// Stress of a search direction.
-    searched: Vec<Tensor<D>>,
+    /// The unknown and its linear stress [m/s, Pa].
+    pub(super) current: Vec<Record>,
+    /// The same with the exact yield's stress added: what the solve starts from.
+    whole: Vec<Record>,
+    /// Stress that does not change in a solve: lambda - r q of the exact yield; empty without it [Pa].
+    pub(super) fixed: Vec<Tensor<D>>,
+    /// A search direction and its stress.
+    searched: Vec<Record>,
     jacobi: Vec<Tensor<D>>,
     residual: Vec<Vector<D>>,
+    /// Jacobi blocks times the residual.
+    descent: Vec<Vector<D>>,
     direction: Vec<Vector<D>>,
     product: Vec<Vector<D>>,
-    /// The unknown; after the solve the new velocity [m/s].
+    /// First guess of the velocity; after the solve the new velocity [m/s].
     pub(super) velocity: Vec<Vector<D>>,
     /// What of the wall friction of each of its rows does not follow the velocity [Pa].
     pub(super) held: Vec<Vector<D>>,
@@ -30,22 +35,28 @@ pub(super) struct Viscous<const D: usize> {
 
 impl<const D: usize> Viscous<D> {
     fn resize(&mut self, n: usize) {
-        for t in [
-            &mut self.linear,
-            &mut self.tau,
-            &mut self.searched,
-            &mut self.jacobi,
-        ] {
-            t.resize(n, [[0.0; D]; D]);
+        for r in [&mut self.current, &mut self.whole, &mut self.searched] {
+            r.resize(n, Record::default());
         }
+        self.jacobi.resize(n, [[0.0; D]; D]);
         for v in [
             &mut self.residual,
+            &mut self.descent,
             &mut self.direction,
             &mut self.product,
             &mut self.velocity,
         ] {
             v.resize(n, [0.0; D]);
         }
+    }
+
+    /// Whole stress of particle i at the end of the last linear solve [Pa].
+    pub(super) fn stress(&self, i: usize) -> Tensor<D> {
+        let mut tau = self.current[i].stress();
+        if let Some(fixed) = self.fixed.get(i) {
+            add(&mut tau, fixed);
+        }
+        tau
     }
 }
 
@@ -61,6 +72,9 @@ impl<const D: usize> Solver<D> {
         work.resize(state.grains.len());
         let result = self.solve_with_yield(state, dt, &mut work);
         if result.is_ok() {
+            let current = &work.current;
+            self.workers
+                .each(&mut work.velocity, |i, v| *v = current[i].velocity());
             self.restore_momentum(state, &mut work.velocity);
         }
         self.viscous = work;
@@ -79,13 +93,12 @@ impl<const D: usize> Solver<D> {
             let (start, a) = (&self.prediction[i].velocity, &acceleration[i]);
             *v = std::array::from_fn(|k| start[k] + dt * a[k]);
         });
-        self.stress(&work.velocity, &mut work.linear, true);
+        self.stress(&work.velocity, &mut work.current, true);
         self.jacobi_blocks(state, dt, &mut work.jacobi);
         self.grip_blocks(dt, &mut work.jacobi);
         let limit = self.solver_limit(state, dt);
         match self.numerics.yield_form {
             YieldForm::Capped => {
-                work.tau.clone_from(&work.linear);
                 self.hold_friction(state, &mut work.held);
                 let spent = self.conjugate_gradients(state, dt, limit, work)?;
                 self.project_friction(state, work);
@@ -94,7 +107,7 @@ impl<const D: usize> Solver<D> {
             YieldForm::Exact { iterations } => {
                 let mut spent = 0;
                 for _ in 0..iterations {
-                    self.add_plastic_stress(state, work);
+                    self.fix_plastic_stress(state, work);
                     self.hold_friction(state, &mut work.held);
                     spent += self.conjugate_gradients(state, dt, limit, work)?;
                     self.project(state, work);
@@ -105,7 +118,7 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// From `work.velocity` with its stress `work.tau`, in place; `work.linear` follows.
+    /// From the velocity of `work.current`, in place.
     fn conjugate_gradients(
         &self,
         state: &State<D>,
@@ -113,34 +126,24 @@ impl<const D: usize> Solver<D> {
         limit: f64,
         work: &mut Viscous<D>,
     ) -> Result<u32, SolverError> {
-        let n = state.grains.len();
         let (workers, mass) = (&self.workers, &state.grains.mass);
+        let mut norm2 = self.first_residual(state, dt, work);
         let Viscous {
-            linear,
-            tau,
+            current,
             searched,
             jacobi,
             residual,
+            descent,
             direction,
             product,
-            velocity,
-            held,
+            ..
         } = work;
-        // residual = M (v* - v) + dt F(v), walls moving.
-        self.force(velocity, tau, product, true);
-        self.add_friction_force(velocity, product, Some(held));
-        workers.each(residual, |i, r| {
-            let start = &self.prediction[i].velocity;
-            *r =
-                std::array::from_fn(|k| mass[i] * (start[k] - velocity[i][k]) + dt * product[i][k]);
-        });
-        let mut norm2 = dot_rows(workers, residual, residual);
         if !norm2.is_finite() {
             return Err(self.not_finite(state, "viscous force", |i| {
                 residual[i].iter().all(|v| v.is_finite())
             }));
         }
-        let mut rz = 0.0;
+        let (mut rz, mut beta) = (0.0, 0.0);
         let mut iterations = 0;
         while norm2 > limit * limit {
             if iterations == self.numerics.solver_max_iterations {
@@ -151,40 +154,82 @@ impl<const D: usize> Solver<D> {
                     allowed: limit,
                 });
             }
-            let next = sum_rows(workers, n, |i| {
-                dot(&residual[i], &apply(&jacobi[i], &residual[i]))
-            });
-            let beta = if iterations == 0 { 0.0 } else { next / rz };
-            rz = next;
+            if iterations == 0 {
+                [rz] = workers.both(descent, residual, |i, z, r| {
+                    *z = apply(&jacobi[i], r);
+                    [dot(r, z)]
+                });
+            }
             workers.each(direction, |i, d| {
-                let z = apply(&jacobi[i], &residual[i]);
-                *d = std::array::from_fn(|k| z[k] + beta * d[k]);
+                *d = std::array::from_fn(|k| descent[i][k] + beta * d[k]);
             });
             self.stress(direction, searched, false);
-            self.force(direction, searched, product, false);
-            self.add_friction_force(direction, product, None);
-            workers.each(product, |i, q| {
-                *q = std::array::from_fn(|k| mass[i] * direction[i][k] - dt * q[k])
+            let mut curvature = self.force(searched, product, false, |i, f| {
+                let d = &direction[i];
+                let q: Vector<D> = std::array::from_fn(|k| mass[i] * d[k] - dt * f[k]);
+                (q, dot(d, &q))
             });
-            let curvature = dot_rows(workers, direction, product);
+            self.each_friction(searched, None, |i, push| {
+                for k in 0..D {
+                    product[i][k] += dt * push[k];
+                    curvature += dt * direction[i][k] * push[k];
+                }
+            });
             if curvature.is_nan() || curvature <= 0.0 {
                 return Err(self.not_finite(state, "viscous solve", |i| {
                     product[i].iter().all(|v| v.is_finite())
                 }));
             }
             let step = rz / curvature;
-            workers.each(velocity, |i, v| {
-                *v = std::array::from_fn(|k| v[k] + step * direction[i][k])
+            workers.each(current, |i, c| c.add_scaled(step, &searched[i]));
+            let [r2, next] = workers.both(descent, residual, |i, z, r| {
+                *r = std::array::from_fn(|k| r[k] - step * product[i][k]);
+                *z = apply(&jacobi[i], r);
+                [dot(r, r), dot(r, z)]
             });
-            workers.each(linear, |i, t| add_scaled(t, step, &searched[i]));
-            workers.each(tau, |i, t| add_scaled(t, step, &searched[i]));
-            workers.each(residual, |i, r| {
-                *r = std::array::from_fn(|k| r[k] - step * product[i][k])
-            });
-            norm2 = dot_rows(workers, residual, residual);
+            (norm2, beta, rz) = (r2, next / rz, next);
             iterations += 1;
         }
         Ok(iterations)
+    }
+
+    /// residual = M (v* - v) + dt F(v), walls moving; returns its square.
+    fn first_residual(&self, state: &State<D>, dt: f64, work: &mut Viscous<D>) -> f64 {
+        let Viscous {
+            current,
+            whole,
+            fixed,
+            residual,
+            held,
+            ..
+        } = work;
+        let start = if fixed.is_empty() {
+            &*current
+        } else {
+            self.workers.each(whole, |i, w| {
+                let mut tau = current[i].stress();
+                add(&mut tau, &fixed[i]);
+                *w = Record::of_stress(&tau, &current[i].velocity());
+            });
+            &*whole
+        };
+        let mass = &state.grains.mass;
+        let norm2 = self.force(start, residual, true, |i, f| {
+            let (aim, v) = (&self.prediction[i].velocity, start[i].velocity::<D>());
+            let r: Vector<D> = std::array::from_fn(|k| mass[i] * (aim[k] - v[k]) + dt * f[k]);
+            (r, dot(&r, &r))
+        });
+        if held.is_empty() {
+            return norm2;
+        }
+        self.each_friction(start, Some(held), |i, push| {
+            for k in 0..D {
+                residual[i][k] -= dt * push[k];
+            }
+        });
+        sum_rows(&self.workers, residual.len(), |i| {
+            dot(&residual[i], &residual[i])
+        })
     }
 
     /// tolerance x |M (v* - u)|, at least that of one step's fall; u is the walls' mean velocity where walls are touched,
@@ -239,12 +284,12 @@ impl<const D: usize> Solver<D> {
     }
 }
 
-/// t += s u.
+/// t += u.
 #[inline(always)]
-fn add_scaled<const D: usize>(t: &mut Tensor<D>, s: f64, u: &Tensor<D>) {
+fn add<const D: usize>(t: &mut Tensor<D>, u: &Tensor<D>) {
     for a in 0..D {
         for b in 0..D {
-            t[a][b] += s * u[a][b];
+            t[a][b] += u[a][b];
         }
     }
 }

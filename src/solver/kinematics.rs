@@ -4,12 +4,15 @@
 //! Symbols: F = W'(r)/r <= 0, grad W_ij = F x_ij, x_ij = x_i - x_j, v_ij = v_i - v_j, V = m/rho.
 
 use crate::math::{
-    Tensor, Vector, add_outer, determinant, dot, inverse, multiply, norm, scale, sub, trace,
+    Lanes, Tensor, Vector, add_outer, determinant, dot, in_lanes, inverse, multiply, norm, scale,
+    sub, trace,
 };
 use crate::state::State;
 
 use super::Solver;
-use super::pair::{Block, Pair, WallRow};
+use super::fluid_row::Row;
+use super::pair::{Block, WallRow};
+use super::record::Record;
 use super::wall_friction::Contact;
 
 /// What the sweep leaves per particle.
@@ -27,17 +30,6 @@ pub(super) struct Kinematics {
     pub(super) relative_speed: f64,
 }
 
-/// Sums of one row while it is swept.
-struct Row<const D: usize> {
-    /// sum (v_j - v_i) (x) g, walls twice.
-    gradient: Tensor<D>,
-    /// -sum x_ij (x) g: the identity far from surfaces.
-    moment: Tensor<D>,
-    /// gamma_pair^2 = (D + 2) sum V_j |F| (v_ij . x_ij)^2/r^2.
-    pair_shear2: f64,
-    speed2: f64,
-}
-
 impl<const D: usize> Solver<D> {
     /// Sweeps all pairs; afterwards `self.kinematics` and the blocks' pairs belong to the state's positions and velocities.
     pub(super) fn sweep_kinematics(&mut self, state: &State<D>) {
@@ -45,46 +37,54 @@ impl<const D: usize> Solver<D> {
         self.volume.resize(n, 0.0);
         self.update_volumes(&state.grains.mass, &state.grains.swept_density);
         self.update_rings(state);
+        let mut records = std::mem::take(&mut self.records);
+        records.resize(n, Record::default());
+        let grains = &state.grains;
+        self.workers.each(&mut records, |i, r| {
+            let hoop = self.rings.get(i).map_or(0.0, |ring| ring.hoop);
+            *r = Record::of_motion(
+                &grains.position[i],
+                &grains.velocity[i],
+                self.volume[i],
+                hoop,
+            );
+        });
         self.kinematics.resize(n, Kinematics::default());
         let mut kinematics = std::mem::take(&mut self.kinematics);
         let mut blocks = std::mem::take(&mut self.lists.blocks);
         self.workers
             .blocks(&mut blocks, &mut kinematics, |block, first, out| {
-                self.block_kinematics(state, block, first, out)
+                in_lanes!(self.arch, |lanes| if self.geometry.is_axisymmetric() {
+                    self.block_kinematics::<_, true>(lanes, state, &records, block, first, out);
+                } else {
+                    self.block_kinematics::<_, false>(lanes, state, &records, block, first, out);
+                });
             });
+        self.records = records;
         self.lists.blocks = blocks;
         self.kinematics = kinematics;
     }
 
-    fn block_kinematics(
+    #[inline(always)]
+    fn block_kinematics<L: Lanes, const RINGS: bool>(
         &self,
+        lanes: L,
         state: &State<D>,
+        records: &[Record],
         block: &mut Block<D>,
         first: usize,
         out: &mut [Kinematics],
     ) {
-        let mut pairs = std::mem::take(&mut block.pairs);
-        let mut wall_rows = std::mem::take(&mut block.wall_rows);
+        block.forget_pairs();
+        let mut near = std::mem::take(&mut block.near);
         let mut contacts = std::mem::take(&mut block.contacts);
-        pairs.clear();
-        wall_rows.clear();
-        contacts.clear();
-        block.pair_ends.clear();
         for (row, o) in out.iter_mut().enumerate() {
             let i = first + row;
-            let mut sums = Row {
-                gradient: [[0.0; D]; D],
-                moment: [[0.0; D]; D],
-                pair_shear2: 0.0,
-                speed2: 0.0,
-            };
-            let near = block.row(row);
-            if self.geometry.is_axisymmetric() {
-                self.fluid_row::<true>(state, i, near, &mut pairs, &mut sums);
-            } else {
-                self.fluid_row::<false>(state, i, near, &mut pairs, &mut sums);
-            }
-            block.pair_ends.push(pairs.len() as u32);
+            let (x, v) = (&state.grains.position[i], &state.grains.velocity[i]);
+            let count = self.find_near(lanes, records, i, x, block.row(row), &mut near);
+            let mut sums =
+                self.fluid_row::<L, RINGS>(lanes, records, (i, x, v), block, &near[..count]);
+            block.group_ends.push(block.j.len() as u32);
             if !block.wall_row(row).is_empty()
                 && let Some(w) = self.wall_row(
                     state,
@@ -94,56 +94,12 @@ impl<const D: usize> Solver<D> {
                     &mut contacts,
                 )
             {
-                wall_rows.push(w);
+                block.wall_rows.push(w);
             }
-            *o = self.finish(&sums, i, &state.grains.velocity[i]);
+            *o = self.finish(&sums, i, v);
         }
-        block.pairs = pairs;
-        block.wall_rows = wall_rows;
+        block.near = near;
         block.contacts = contacts;
-    }
-
-    /// Pairs and sums of a row; RINGS: particles are rings.
-    #[inline(always)]
-    fn fluid_row<const RINGS: bool>(
-        &self,
-        state: &State<D>,
-        i: usize,
-        near: &[u32],
-        pairs: &mut Vec<Pair<D>>,
-        sums: &mut Row<D>,
-    ) {
-        let grains = &state.grains;
-        let (xi, vi) = (&grains.position[i], &grains.velocity[i]);
-        let support = self.kernel.support();
-        let support2 = support * support;
-        let dissipation = D as f64 + 2.0;
-        for &j in near {
-            let ju = j as usize;
-            let x = self.periodic.difference(xi, &grains.position[ju]);
-            let r2 = dot(&x, &x);
-            if r2 >= support2 || r2 == 0.0 {
-                continue;
-            }
-            let r = r2.sqrt();
-            let mut vf = self.volume[ju] * self.kernel.f(r);
-            if RINGS {
-                vf *= self.ring_share(i, ju);
-            }
-            let g = scale(vf, &x);
-            let v = sub(vi, &grains.velocity[ju]);
-            add_outer(&mut sums.gradient, -1.0, &v, &g);
-            add_outer(&mut sums.moment, -1.0, &x, &g);
-            let vx = dot(&v, &x);
-            sums.pair_shear2 -= dissipation * vf * vx * vx / r2;
-            sums.speed2 = sums.speed2.max(dot(&v, &v));
-            // |g| r = |vf| r^2.
-            pairs.push(Pair {
-                j,
-                g,
-                c: 2.0 * dissipation / (-vf * r2),
-            });
-        }
     }
 
     fn wall_row(
@@ -238,7 +194,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// From the sums of row i, at velocity v, to what the rheology needs.
-    fn finish(&self, sums: &Row<D>, i: usize, v: &Vector<D>) -> Kinematics {
+    pub(super) fn finish(&self, sums: &Row<D>, i: usize, v: &Vector<D>) -> Kinematics {
         let hoop = self.hoop_rate(i, v);
         let rate = |g: &Tensor<D>| {
             self.geometry

@@ -99,16 +99,16 @@ impl<const D: usize> Lists<D> {
                 grid.for_near(&x[i], |j| {
                     let d = periodic.difference(&x[i], &x[j as usize]);
                     if j as usize != i && crate::math::dot(&d, &d) < reach2 {
-                        block.neighbours.push(j);
+                        block.add_neighbour(j);
                     }
                 });
                 wall_grid.for_near(&x[i], |g| {
                     let d = periodic.difference(&x[i], &walls.position[g as usize]);
                     if crate::math::dot(&d, &d) < reach2 {
-                        block.walls.push(g);
+                        block.add_wall(g);
                     }
                 });
-                block.end_row();
+                block.end_row(i as u32);
             }
         });
         self.find_pieces(n);

@@ -10,6 +10,7 @@
 mod constitutive;
 mod devices;
 mod error;
+mod fluid_row;
 mod grid;
 mod implicit;
 mod kinematics;
@@ -17,12 +18,17 @@ mod lists;
 mod numerics;
 mod pair;
 mod paper_a;
+#[cfg(test)]
+mod plain;
 mod plastic;
 mod pressure;
+mod record;
 mod rest;
 mod ring;
 #[cfg(test)]
 mod ring_tests;
+#[cfg(test)]
+mod sweep_tests;
 mod timestep;
 mod validity;
 mod viscous;
@@ -40,13 +46,14 @@ use std::sync::Arc;
 use crate::boundary::{Mover, Plate, WallPoints};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
-use crate::math::{Geometry, Vector, Workers, norm};
+use crate::math::{Arch, Geometry, Quad, Vector, Workers, norm};
 use crate::state::State;
 
 use implicit::Viscous;
 use kinematics::Kinematics;
 use lists::Lists;
 use pressure::Prediction;
+use record::Record;
 use ring::Ring;
 use wall_friction::Friction;
 
@@ -156,14 +163,20 @@ pub struct Solver<const D: usize> {
     sources: Vec<Source<D>>,
     sinks: Vec<Sink<D>>,
     workers: Arc<Workers>,
+    /// Instructions of the hot loops.
+    arch: Arch,
     can_sleep: bool,
     lists: Lists<D>,
+    /// Place and motion of each particle as sweeps over pairs look it up.
+    records: Vec<Record>,
     kinematics: Vec<Kinematics>,
     /// V = m/rho; in the plane for each metre of width.
     volume: Vec<f64>,
     /// Empty unless particles are rings.
     rings: Vec<Ring>,
     pressure: Vec<f64>,
+    /// Pressure, shear rate, density and pair viscosity of each particle, as the pressure sweep looks it up.
+    loads: Vec<Quad>,
     /// Pressure with bulk friction, what momentum feels [Pa]; empty unless a material has bulk friction.
     normal_pressure: Vec<f64>,
     viscosity: Vec<f64>,
@@ -226,11 +239,14 @@ impl<const D: usize> Solver<D> {
             sources,
             sinks,
             workers: Arc::new(Workers::new(threads)),
+            arch: Arch::detect(),
             can_sleep,
+            records: Vec::new(),
             kinematics: Vec::new(),
             volume: Vec::new(),
             rings: Vec::new(),
             pressure: Vec::new(),
+            loads: Vec::new(),
             normal_pressure: Vec::new(),
             viscosity: Vec::new(),
             pair_viscosity: Vec::new(),

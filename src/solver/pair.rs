@@ -1,19 +1,8 @@
-//! Pair coefficients of the current positions, kept by blocks of rows.
+//! Pair coefficients of the current positions, kept by blocks of rows, four neighbours to a group.
 
-use crate::math::{Tensor, Vector};
+use crate::math::{LANES, Quad, Tensor, Vector};
 
 use super::wall_friction::Contact;
-
-/// Particle i against neighbour j: all that sweeps need.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pair<const D: usize> {
-    /// Neighbour.
-    pub(super) j: u32,
-    /// V_j grad_i W_ij [1/m].
-    pub(super) g: Vector<D>,
-    /// 2 (D + 2) / (|g| r), so that c (v.g) g is the pair form of viscosity; `weigh` multiplies it by eta_ij [.. m^2].
-    pub(super) c: f64,
-}
 
 /// Sums over the wall points that a particle sees. P projects on the normal at free slip, else P = I; w weight;
 /// g = V_i w grad W.
@@ -36,15 +25,25 @@ pub(super) struct WallRow<const D: usize> {
 }
 
 /// A chunk of rows.
+///
+/// A group is four pairs of one row: j neighbours; g = V_j grad_i W_ij [1/m]; c = 2 (D + 2)/(|g| r) [m^2], so that
+/// c (v.g) g is the pair form of viscosity, multiplied by eta_ij in `pressure`. Rows end with pairs of a particle with
+/// itself, g = 0, that fill the last group.
 #[derive(Debug, Default)]
 pub(super) struct Block<const D: usize> {
-    pub(super) neighbours: Vec<u32>,
-    pub(super) walls: Vec<u32>,
+    neighbours: Vec<u32>,
+    walls: Vec<u32>,
     ends: Vec<(u32, u32)>,
-    /// Pairs within the support, row after row.
-    pub(super) pairs: Vec<Pair<D>>,
-    /// Where each row's pairs end.
-    pub(super) pair_ends: Vec<u32>,
+    /// Neighbours within the support of the row in hand, room for the longest row.
+    pub(super) near: Vec<u32>,
+    /// Neighbours of each group.
+    pub(super) j: Vec<[u32; LANES]>,
+    /// g of each group.
+    pub(super) g: Vec<[Quad; D]>,
+    /// c of each group.
+    pub(super) c: Vec<Quad>,
+    /// Where each row's groups end.
+    pub(super) group_ends: Vec<u32>,
     /// Rows that see walls.
     pub(super) wall_rows: Vec<WallRow<D>>,
     /// Faces with friction that rows see, row after row; empty in scenes without.
@@ -56,9 +55,25 @@ impl<const D: usize> Block<D> {
         self.neighbours.clear();
         self.walls.clear();
         self.ends.clear();
+        self.near.clear();
     }
 
-    pub(super) fn end_row(&mut self) {
+    pub(super) fn add_neighbour(&mut self, j: u32) {
+        self.neighbours.push(j);
+    }
+
+    pub(super) fn add_wall(&mut self, w: u32) {
+        self.walls.push(w);
+    }
+
+    /// Ends the row of particle i: filled up with itself to whole groups.
+    pub(super) fn end_row(&mut self, i: u32) {
+        let start = self.ends.last().map_or(0, |end| end.0) as usize;
+        let count = (self.neighbours.len() - start).next_multiple_of(LANES);
+        self.neighbours.resize(start + count, i);
+        if self.near.len() < count {
+            self.near.resize(count, 0);
+        }
         self.ends
             .push((self.neighbours.len() as u32, self.walls.len() as u32));
     }
@@ -67,7 +82,7 @@ impl<const D: usize> Block<D> {
         self.ends.len()
     }
 
-    /// Neighbours of a row, out to the skin.
+    /// Neighbours of a row, out to the skin; whole groups, the last filled with the particle itself.
     pub(super) fn row(&self, row: usize) -> &[u32] {
         let start = if row == 0 { 0 } else { self.ends[row - 1].0 };
         &self.neighbours[start as usize..self.ends[row].0 as usize]
@@ -79,16 +94,24 @@ impl<const D: usize> Block<D> {
         &self.walls[start as usize..self.ends[row].1 as usize]
     }
 
-    /// Range of a row's pairs.
-    #[inline(always)]
-    pub(super) fn pair_range(&self, row: usize) -> std::ops::Range<usize> {
-        let start = if row == 0 { 0 } else { self.pair_ends[row - 1] };
-        start as usize..self.pair_ends[row] as usize
+    /// Forgets groups, wall rows and contacts before a sweep makes them anew.
+    pub(super) fn forget_pairs(&mut self) {
+        self.j.clear();
+        self.g.clear();
+        self.c.clear();
+        self.group_ends.clear();
+        self.wall_rows.clear();
+        self.contacts.clear();
     }
 
-    /// Pairs of a row.
+    /// Range of a row's groups.
     #[inline(always)]
-    pub(super) fn pairs_of(&self, row: usize) -> &[Pair<D>] {
-        &self.pairs[self.pair_range(row)]
+    pub(super) fn groups(&self, row: usize) -> std::ops::Range<usize> {
+        let start = if row == 0 {
+            0
+        } else {
+            self.group_ends[row - 1]
+        };
+        start as usize..self.group_ends[row] as usize
     }
 }

@@ -17,33 +17,38 @@ use super::Solver;
 use super::implicit::Viscous;
 
 impl<const D: usize> Solver<D> {
-    /// tau = linear stress of v + lambda - r q.
-    pub(super) fn add_plastic_stress(&self, state: &State<D>, work: &mut Viscous<D>) {
+    /// lambda - r q, what the next linear solve takes as given.
+    pub(super) fn fix_plastic_stress(&self, state: &State<D>, work: &mut Viscous<D>) {
         let (lambda, q) = (&state.grains.stress, &state.grains.plastic_rate);
-        let linear = &work.linear;
-        self.workers.each(&mut work.tau, |i, t| {
+        work.fixed.resize(lambda.len(), [[0.0; D]; D]);
+        self.workers.each(&mut work.fixed, |i, t| {
             let r = self.viscosity[i];
             for a in 0..D {
                 for b in 0..D {
-                    t[a][b] = linear[i][a][b] + (lambda[i][a][b] - r * q[i][a][b]);
+                    t[a][b] = lambda[i][a][b] - r * q[i][a][b];
                 }
             }
         });
     }
 
-    /// Steps 2 and 3 for every particle, from `work.linear`.
+    /// Steps 2 and 3 for every particle, from the linear stress of `work.current`.
     pub(super) fn project(&self, state: &mut State<D>, work: &Viscous<D>) {
         let whole = 1.0 / (1.0 - self.numerics.pair_viscosity_share);
         let grains = &mut state.grains;
-        for i in 0..grains.len() {
-            let material = &self.materials[grains.phase[i] as usize];
-            let x: Tensor<D> = std::array::from_fn(|a| {
-                std::array::from_fn(|b| grains.stress[i][a][b] + whole * work.linear[i][a][b])
-            });
-            let (stress, rate) = self.admissible(material, i, &x);
-            grains.stress[i] = stress;
-            grains.plastic_rate[i] = rate;
-        }
+        let phase = &grains.phase;
+        self.workers.both(
+            &mut grains.stress,
+            &mut grains.plastic_rate,
+            |i, lambda, q| {
+                let material = &self.materials[phase[i] as usize];
+                let linear = work.current[i].stress::<D>();
+                let x: Tensor<D> = std::array::from_fn(|a| {
+                    std::array::from_fn(|b| lambda[a][b] + whole * linear[a][b])
+                });
+                (*lambda, *q) = self.admissible(material, i, &x);
+                []
+            },
+        );
     }
 
     /// (lambda, q) of a trial stress.

@@ -1,8 +1,8 @@
 //! Pressure and gravity: v* = v + dt (g + a_p), and the diffusion of density on pressure (docs/theory.md, E7, E8).
 //!
-//! Symbols: g_ij = V_j grad W_ij; a_i = -(1/rho_i) [sum_j (p_i + p_j) g_ij + sum_walls 2 p_i g_iw].
+//! Symbols: g_ij = V_j grad W_ij; a_i = -(1/rho_i) [sum_j (p_i + p_j) g_ij + sum_walls 2 p_i g_iw]; F = W'(r)/r.
 
-use crate::math::{Vector, dot, sub};
+use crate::math::{Four, Lanes, Quad, Tensor, Vector, in_lanes};
 use crate::state::State;
 
 use super::Solver;
@@ -15,6 +15,8 @@ pub(super) struct Prediction<const D: usize> {
     pub(super) velocity: Vector<D>,
     /// d rho/dt by diffusion [kg/(m^3 s)].
     pub(super) diffusion: f64,
+    /// sum_j eta_ij c g g^T: the pair form's resistance to moving alone, walls not counted [Pa s/m^2].
+    pub(super) resistance: Tensor<D>,
 }
 
 impl<const D: usize> Default for Prediction<D> {
@@ -22,6 +24,7 @@ impl<const D: usize> Default for Prediction<D> {
         Self {
             velocity: [0.0; D],
             diffusion: 0.0,
+            resistance: [[0.0; D]; D],
         }
     }
 }
@@ -29,15 +32,27 @@ impl<const D: usize> Default for Prediction<D> {
 impl<const D: usize> Solver<D> {
     /// Fills `self.prediction`, and multiplies the pairs' coefficients by their viscosity.
     pub(super) fn sweep_pressure(&mut self, state: &State<D>, dt: f64) {
-        self.prediction
-            .resize(state.grains.len(), Prediction::default());
+        let n = state.grains.len();
+        let mut loads = std::mem::take(&mut self.loads);
+        loads.resize(n, Quad::default());
+        self.workers.each(&mut loads, |i, load| {
+            *load = Quad([
+                self.pressure[i],
+                self.kinematics[i].shear,
+                state.grains.density[i],
+                self.pair_viscosity[i],
+            ]);
+        });
+        self.prediction.resize(n, Prediction::default());
         let mut prediction = std::mem::take(&mut self.prediction);
         let mut blocks = std::mem::take(&mut self.lists.blocks);
         self.workers
             .blocks(&mut blocks, &mut prediction, |block, first, out| {
-                for (row, o) in out.iter_mut().enumerate() {
-                    *o = self.predict(state, dt, block, first + row, row);
-                }
+                in_lanes!(self.arch, |lanes| {
+                    for (row, o) in out.iter_mut().enumerate() {
+                        *o = self.predict(lanes, state, &loads, dt, block, first + row, row);
+                    }
+                });
                 let mut rows = std::mem::take(&mut block.wall_rows);
                 for w in &mut rows {
                     let i = first + w.row as usize;
@@ -55,6 +70,7 @@ impl<const D: usize> Solver<D> {
                 }
                 block.wall_rows = rows;
             });
+        self.loads = loads;
         self.lists.blocks = blocks;
         self.prediction = prediction;
     }
@@ -65,9 +81,16 @@ impl<const D: usize> Solver<D> {
         self.width * self.volume[i] / state.grains.mass[i]
     }
 
-    fn predict(
+    #[inline(always)]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "one row of a sweep with what it reads"
+    )]
+    fn predict<L: Lanes>(
         &self,
+        lanes: L,
         state: &State<D>,
+        loads: &[Quad],
         dt: f64,
         block: &mut Block<D>,
         i: usize,
@@ -75,64 +98,102 @@ impl<const D: usize> Solver<D> {
     ) -> Prediction<D> {
         let grains = &state.grains;
         let numerics = &self.numerics;
+        let splat = |a: f64| Four::splat(lanes, a);
+        let [pressure, shear, rho, eta] = loads[i].0;
         let c0 = numerics.sound_speed;
-        let (pi, rho, eta_i) = (self.pressure[i], grains.density[i], self.pair_viscosity[i]);
         let diffuse = numerics.density_diffusion > 0.0;
-        // grad W = F x: |g|^2 c = 2 (D + 2) V |F|.
-        let to_f = -1.0 / (2.0 * (D as f64 + 2.0));
         let damp = numerics.artificial_viscosity * self.kernel.h * c0;
-        let gate = 0.5 * numerics.diffusion_gate_time;
+        // grad W = F x: |g|^2 c = 2 (D + 2) V |F|.
+        let to_f = splat(-1.0 / (2.0 * (D as f64 + 2.0)));
+        let gate = splat(0.5 * numerics.diffusion_gate_time);
         let head = 1.0 / (rho * self.gravity_norm * numerics.spacing).max(f64::MIN_POSITIVE);
-        let normal = self.normal_pressure();
-        let ni = normal[i];
-        let mut force = [0.0; D];
-        let mut diffusion = 0.0;
-        let range = block.pair_range(row);
-        for pair in &mut block.pairs[range] {
-            let j = pair.j as usize;
-            let pj = self.pressure[j];
-            let sum = pi + pj;
-            let push = ni + normal[j];
+        let (zero, half, one) = (splat(0.0), splat(0.5), splat(1.0));
+        let (two, least) = (splat(2.0), splat(f64::MIN_POSITIVE));
+        let normal = (!self.normal_pressure.is_empty()).then_some(&self.normal_pressure[..]);
+        let own_normal = normal.map_or(pressure, |n| n[i]);
+        let mut force = [zero; D];
+        let mut resistance = [[zero; D]; D];
+        let mut diffusion = zero;
+        let range = block.groups(row);
+        let (j, g) = (&block.j[range.clone()], &block.g[range.clone()]);
+        for ((j, g), c) in j.iter().zip(g).zip(&mut block.c[range]) {
+            let [pj, shear_j, rho_j, eta_j] = Four::transpose(
+                lanes,
+                [
+                    &loads[j[0] as usize],
+                    &loads[j[1] as usize],
+                    &loads[j[2] as usize],
+                    &loads[j[3] as usize],
+                ],
+            );
+            let mut g_ij = [zero; D];
             for k in 0..D {
-                force[k] -= push * pair.g[k];
+                g_ij[k] = Four::load(lanes, &g[k]);
             }
-            if numerics.artificial_viscosity > 0.0 {
+            let geometric = Four::load(lanes, c);
+            let push = normal.map_or(pj, |n| Four::gather(lanes, |m| n[j[m] as usize]));
+            let push = splat(own_normal) + push;
+            for k in 0..D {
+                force[k] -= push * g_ij[k];
+            }
+            let mean_rho = half * (splat(rho) + rho_j);
+            if damp > 0.0 {
                 // [A] eq. 38: (v.x)/r^2 = (v.g) F/|g|^2, on approaching and receding pairs alike.
-                let v = sub(&grains.velocity[i], &grains.velocity[j]);
-                let mean_rho = 0.5 * (rho + grains.density[j]);
-                let damping = damp * mean_rho * dot(&v, &pair.g) * to_f * pair.c;
+                let mut along = zero;
                 for k in 0..D {
-                    force[k] += damping * pair.g[k];
+                    let vj = Four::gather(lanes, |m| grains.velocity[j[m] as usize][k]);
+                    along += (splat(grains.velocity[i][k]) - vj) * g_ij[k];
+                }
+                let damping = splat(damp) * mean_rho * along * to_f * geometric;
+                for k in 0..D {
+                    force[k] += damping * g_ij[k];
                 }
             }
-            if diffuse && sum > 0.0 {
-                let vf = to_f * dot(&pair.g, &pair.g) * pair.c;
-                let open = (gate * (self.kinematics[i].shear + self.kinematics[j].shear)).min(1.0);
+            if diffuse {
+                let (mut g2, mut down) = (zero, zero);
+                for k in 0..D {
+                    g2 += g_ij[k] * g_ij[k];
+                    down += splat(self.gravity[k]) * g_ij[k];
+                }
+                let sum = splat(pressure) + pj;
+                let open = (gate * (splat(shear) + shear_j)).min(one);
                 // The hydrostatic part is taken out where there is a hydrostatic load to speak of.
-                let loaded = (sum * head).min(1.0);
-                let still = 0.5 * (rho + grains.density[j]) * dot(&self.gravity, &pair.g) * loaded;
-                diffusion += open * ((pi - pj) * vf - still);
+                let loaded = (sum * splat(head)).min(one);
+                let still = mean_rho * down * loaded;
+                let change = open * ((splat(pressure) - pj) * (to_f * g2 * geometric) - still);
+                diffusion += sum.where_greater(zero, change);
             }
-            let eta_j = self.pair_viscosity[j];
-            let both = eta_i + eta_j;
-            pair.c *= if both > 0.0 {
-                2.0 * eta_i * eta_j / both
-            } else {
-                0.0
-            };
-        }
-        if self.geometry.is_axisymmetric() {
-            let ring = &self.rings[i];
-            force[0] += ni * (ring.hoop + ring.axis);
+            // Harmonic mean of the viscosities; 0 if both are.
+            let both = (splat(eta) + eta_j).max(least);
+            let weighted = geometric * (two * splat(eta) * eta_j).over(both);
+            for a in 0..D {
+                let cg = weighted * g_ij[a];
+                for b in a..D {
+                    resistance[a][b] += cg * g_ij[b];
+                }
+            }
+            *c = weighted.store();
         }
         let specific = self.specific_volume(state, i);
         let mut velocity = grains.velocity[i];
         for k in 0..D {
-            velocity[k] += dt * (self.gravity[k] + specific * force[k]);
+            let mut f = force[k].sum();
+            if k == 0 && self.geometry.is_axisymmetric() {
+                let ring = &self.rings[i];
+                f += own_normal * (ring.hoop + ring.axis);
+            }
+            velocity[k] += dt * (self.gravity[k] + specific * f);
+        }
+        let mut sums = [[0.0; D]; D];
+        for a in 0..D {
+            for b in 0..D {
+                sums[a][b] = resistance[a.min(b)][a.max(b)].sum();
+            }
         }
         Prediction {
             velocity,
-            diffusion: 2.0 * numerics.density_diffusion * self.kernel.h / c0 * diffusion,
+            diffusion: 2.0 * numerics.density_diffusion * self.kernel.h / c0 * diffusion.sum(),
+            resistance: sums,
         }
     }
 }

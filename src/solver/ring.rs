@@ -91,12 +91,6 @@ impl<const D: usize> Solver<D> {
         ring
     }
 
-    /// (1/w_i + 1/w_j)/2 of two rings [1/m]: volumes times it are areas of the section.
-    #[inline(always)]
-    pub(super) fn ring_share(&self, i: usize, j: usize) -> f64 {
-        (self.rings[i].hoop + self.rings[j].hoop) * (0.5 / std::f64::consts::TAU)
-    }
-
     /// Area by which ring i sees a wall point of this weight, times (w_i + w_w)/(2 w_i) [m^2].
     ///
     /// A cell of the lattice, not the ring's own section: that one shrinks as the ring grows, and a ring at the axis

@@ -1,6 +1,7 @@
 //! Rings: the discrete operator, and what is exact or nearly so beside the axis.
 
 use super::numerics::YieldForm;
+use super::record::Record;
 use super::*;
 use crate::boundary::{GroupSpec, polyline_points};
 use crate::math::dot;
@@ -106,10 +107,10 @@ fn column(
 
 /// Viscous force of the velocities `v` at the viscosities of the state.
 fn force(solver: &Solver<2>, v: &[Vector<2>]) -> Vec<Vector<2>> {
-    let mut tau = vec![[[0.0; 2]; 2]; v.len()];
+    let mut records = vec![Record::default(); v.len()];
     let mut force = vec![[0.0; 2]; v.len()];
-    solver.stress(v, &mut tau, false);
-    solver.force(v, &tau, &mut force, false);
+    solver.stress(v, &mut records, false);
+    solver.force(&records, &mut force, false, |_, f| (*f, 0.0));
     force
 }
 

@@ -5,113 +5,169 @@
 //! and the operator is symmetric and positive. A share of eta goes through the pair form, which sees the zero-energy
 //! modes that G does not.
 
-use crate::math::{Tensor, Vector, add_outer, inverse, scale, sub};
+use crate::math::{Four, Lanes, Tensor, Vector, apply, in_lanes, inverse, scale};
 use crate::state::State;
 
 use super::Solver;
 use super::pair::Block;
+use super::record::{Record, stresses};
 
 impl<const D: usize> Solver<D> {
-    /// tau_i = 2 (1 - share) eta_i e_i(v).
-    pub(super) fn stress(&self, v: &[Vector<D>], tau: &mut [Tensor<D>], with_walls: bool) {
-        let share = self.numerics.pair_viscosity_share;
+    /// Records of v_i and tau_i = 2 (1 - share) eta_i e_i(v).
+    pub(super) fn stress(&self, v: &[Vector<D>], out: &mut [Record], with_walls: bool) {
         self.workers
-            .blocks_read(&self.lists.blocks, tau, |block, first, out| {
-                for t in out.iter_mut() {
-                    *t = [[0.0; D]; D];
-                }
-                for w in &block.wall_rows {
-                    out[w.row as usize] = w.gradient(&v[first + w.row as usize], with_walls);
-                }
-                for (row, t) in out.iter_mut().enumerate() {
-                    let i = first + row;
-                    let eta = self.viscosity[i];
-                    if eta == 0.0 {
-                        *t = [[0.0; D]; D];
-                        continue;
-                    }
-                    let mut gradient = *t;
-                    let vi = &v[i];
-                    for pair in block.pairs_of(row) {
-                        let d = sub(&v[pair.j as usize], vi);
-                        for a in 0..D {
-                            for c in 0..D {
-                                gradient[a][c] += d[a] * pair.g[c];
-                            }
+            .blocks_read(&self.lists.blocks, out, |block, first, out| {
+                let mut walls = block.wall_rows.iter().peekable();
+                in_lanes!(
+                    self.arch,
+                    |lanes| for (row, o) in out.iter_mut().enumerate() {
+                        let i = first + row;
+                        let mut gradient = [[0.0; D]; D];
+                        if let Some(w) = walls.next_if(|w| w.row as usize == row) {
+                            gradient = w.gradient(&v[i], with_walls);
+                        }
+                        if self.viscosity[i] != 0.0 {
+                            self.add_gradient(lanes, block, row, i, v, &mut gradient);
+                            *o = Record::of_stress(&self.row_stress(i, &v[i], &gradient), &v[i]);
+                        } else {
+                            *o = Record::of_stress(&[[0.0; D]; D], &v[i]);
                         }
                     }
-                    let f = 2.0 * (1.0 - share) * eta;
-                    gradient[0][0] += self.axis_rate(i, vi);
-                    let e = self
-                        .geometry
-                        .strain_deviator(&gradient, self.hoop_rate(i, vi));
-                    *t = e.map(|r| scale(f, &r));
-                }
+                );
             });
     }
 
-    /// F_i [N]: stress form with tau, and the pair form's share.
-    pub(super) fn force(
-        &self,
-        v: &[Vector<D>],
-        tau: &[Tensor<D>],
-        force: &mut [Vector<D>],
-        with_walls: bool,
-    ) {
-        let share = self.numerics.pair_viscosity_share;
-        self.workers
-            .blocks_read(&self.lists.blocks, force, |block, first, out| {
-                for (row, f) in out.iter_mut().enumerate() {
-                    let i = first + row;
-                    *f = self.row_force(block, row, i, v, tau, share);
-                }
-                for w in &block.wall_rows {
-                    let i = first + w.row as usize;
-                    let stress = w.stress_force(&tau[i]);
-                    let drag = crate::math::apply(&w.c, &v[i]);
-                    let f = &mut out[w.row as usize];
-                    for k in 0..D {
-                        let drive = if with_walls { w.cv[k] } else { 0.0 };
-                        f[k] += self.width
-                            * self.volume[i]
-                            * (stress[k] - 2.0 * share * (drag[k] - drive));
-                    }
-                }
-            });
-    }
-
+    /// gradient += sum_j (v_j - v_i) (x) g_ij.
     #[inline(always)]
-    fn row_force(
+    fn add_gradient<L: Lanes>(
         &self,
+        lanes: L,
         block: &Block<D>,
         row: usize,
         i: usize,
         v: &[Vector<D>],
-        tau: &[Tensor<D>],
-        share: f64,
-    ) -> Vector<D> {
-        let (vi, ti) = (&v[i], &tau[i]);
-        let mut f = [0.0; D];
-        for pair in block.pairs_of(row) {
-            let j = pair.j as usize;
-            let tj = &tau[j];
-            let mut along = 0.0;
-            for k in 0..D {
-                along += (v[j][k] - vi[k]) * pair.g[k];
-            }
-            let c = share * pair.c * along;
+        gradient: &mut Tensor<D>,
+    ) {
+        let zero = Four::splat(lanes, 0.0);
+        let mut sums = [[zero; D]; D];
+        let mut own = [zero; D];
+        for k in 0..D {
+            own[k] = Four::splat(lanes, v[i][k]);
+        }
+        let range = block.groups(row);
+        for (j, g) in block.j[range.clone()].iter().zip(&block.g[range]) {
+            let near = [
+                &v[j[0] as usize],
+                &v[j[1] as usize],
+                &v[j[2] as usize],
+                &v[j[3] as usize],
+            ];
             for a in 0..D {
-                let mut s = c * pair.g[a];
+                let d = Four::gather(lanes, |m| near[m][a]) - own[a];
                 for b in 0..D {
-                    s += (ti[a][b] + tj[a][b]) * pair.g[b];
+                    sums[a][b] += d * Four::load(lanes, &g[b]);
+                }
+            }
+        }
+        for a in 0..D {
+            for b in 0..D {
+                gradient[a][b] += sums[a][b].sum();
+            }
+        }
+    }
+
+    /// 2 (1 - share) eta_i e of a velocity gradient.
+    pub(super) fn row_stress(&self, i: usize, v: &Vector<D>, gradient: &Tensor<D>) -> Tensor<D> {
+        let mut gradient = *gradient;
+        gradient[0][0] += self.axis_rate(i, v);
+        let hoop = self.hoop_rate(i, v);
+        let e = self.geometry.strain_deviator(&gradient, hoop);
+        let f = 2.0 * (1.0 - self.numerics.pair_viscosity_share) * self.viscosity[i];
+        e.map(|r| scale(f, &r))
+    }
+
+    /// out_i from the viscous force F_i [N] of records of stress and velocity, the pair form's share included; and the
+    /// sum of what `finish(i, F_i)` returns beside it, in a fixed order.
+    pub(super) fn force(
+        &self,
+        records: &[Record],
+        out: &mut [Vector<D>],
+        with_walls: bool,
+        finish: impl Fn(usize, &Vector<D>) -> (Vector<D>, f64) + Sync,
+    ) -> f64 {
+        let share = self.numerics.pair_viscosity_share;
+        self.workers
+            .blocks_sum(&self.lists.blocks, out, |block, first, out| {
+                let mut walls = block.wall_rows.iter().peekable();
+                let mut sum = 0.0;
+                in_lanes!(
+                    self.arch,
+                    |lanes| for (row, o) in out.iter_mut().enumerate() {
+                        let i = first + row;
+                        let mut f = if self.geometry.is_axisymmetric() {
+                            self.row_force::<_, true>(lanes, block, row, i, records)
+                        } else {
+                            self.row_force::<_, false>(lanes, block, row, i, records)
+                        };
+                        let own = &records[i];
+                        if self.geometry.is_axisymmetric() {
+                            f[0] -= self.ring_drag(i, &own.velocity(), &own.stress(), share);
+                        }
+                        if let Some(w) = walls.next_if(|w| w.row as usize == row) {
+                            let stress = w.stress_force(&own.stress());
+                            let drag = apply(&w.c, &own.velocity());
+                            for k in 0..D {
+                                let drive = if with_walls { w.cv[k] } else { 0.0 };
+                                f[k] += stress[k] - 2.0 * share * (drag[k] - drive);
+                            }
+                        }
+                        let (value, part) = finish(i, &scale(self.width * self.volume[i], &f));
+                        *o = value;
+                        sum += part;
+                    }
+                );
+                sum
+            })
+    }
+
+    /// sum_j (tau_i + tau_j) g_ij and the pair form's share.
+    #[inline(always)]
+    fn row_force<L: Lanes, const RINGS: bool>(
+        &self,
+        lanes: L,
+        block: &Block<D>,
+        row: usize,
+        i: usize,
+        records: &[Record],
+    ) -> Vector<D> {
+        let share = Four::splat(lanes, self.numerics.pair_viscosity_share);
+        let zero = Four::splat(lanes, 0.0);
+        let own = stresses::<L, D, RINGS>(lanes, records, &[i as u32; 4]);
+        let mut f = [zero; D];
+        let range = block.groups(row);
+        let (j, g) = (&block.j[range.clone()], &block.g[range.clone()]);
+        for ((j, g), c) in j.iter().zip(g).zip(&block.c[range]) {
+            let other = stresses::<L, D, RINGS>(lanes, records, j);
+            let mut g_ij = [zero; D];
+            let mut along = zero;
+            for k in 0..D {
+                g_ij[k] = Four::load(lanes, &g[k]);
+                along += (other.v[k] - own.v[k]) * g_ij[k];
+            }
+            let pair = share * Four::load(lanes, c) * along;
+            for a in 0..D {
+                let mut s = pair * g_ij[a];
+                for b in 0..D {
+                    s += (own.tau[a][b] + other.tau[a][b]) * g_ij[b];
                 }
                 f[a] += s;
             }
         }
-        if self.geometry.is_axisymmetric() {
-            f[0] -= self.ring_drag(i, vi, ti, share);
+        let mut sums = [0.0; D];
+        for (sum, f) in sums.iter_mut().zip(f) {
+            *sum = f.sum();
         }
-        scale(self.width * self.volume[i], &f)
+        sums
     }
 
     /// Inverse Jacobi blocks: m I + dt V_i sum c g g^T, the pair form with the whole viscosity.
@@ -119,10 +175,7 @@ impl<const D: usize> Solver<D> {
         self.workers
             .blocks_read(&self.lists.blocks, jacobi, |block, first, out| {
                 for (row, b) in out.iter_mut().enumerate() {
-                    *b = [[0.0; D]; D];
-                    for pair in block.pairs_of(row) {
-                        add_outer(b, pair.c, &pair.g, &pair.g);
-                    }
+                    *b = self.prediction[first + row].resistance;
                 }
                 for w in &block.wall_rows {
                     let b = &mut out[w.row as usize];
@@ -132,13 +185,11 @@ impl<const D: usize> Solver<D> {
                         }
                     }
                 }
-                if self.geometry.is_axisymmetric() {
-                    for (row, b) in out.iter_mut().enumerate() {
-                        b[0][0] += self.ring_stiffness(first + row);
-                    }
-                }
                 for (row, b) in out.iter_mut().enumerate() {
                     let i = first + row;
+                    if self.geometry.is_axisymmetric() {
+                        b[0][0] += self.ring_stiffness(i);
+                    }
                     let f = dt * self.width * self.volume[i];
                     for r in 0..D {
                         for c in 0..D {

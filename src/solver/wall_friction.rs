@@ -16,6 +16,7 @@ use crate::state::State;
 
 use super::Solver;
 use super::implicit::Viscous;
+use super::record::Record;
 
 /// A face with friction, as one particle sees it.
 #[derive(Clone, Copy, Debug)]
@@ -193,24 +194,24 @@ impl<const D: usize> Solver<D> {
         held.extend(rows.map(|r| sub(&t[r.i], &scale(r.penalty, &s[r.i]))));
     }
 
-    /// Adds friction to the forces on particles [N]; `held`: with what does not follow the velocity.
-    pub(super) fn add_friction_force(
+    /// Calls `add(i, push)` with the force of friction against each particle [N] at the velocity of its record;
+    /// `held`: with what does not follow the velocity.
+    pub(super) fn each_friction(
         &self,
-        v: &[Vector<D>],
-        force: &mut [Vector<D>],
+        records: &[Record],
         held: Option<&[Vector<D>]>,
+        mut add: impl FnMut(usize, &Vector<D>),
     ) {
         for (n, row) in self.friction.rows.iter().enumerate() {
-            let mut push = scale(row.penalty, &apply(&row.grip, &v[row.i]));
+            let v: Vector<D> = records[row.i].velocity();
+            let mut push = scale(row.penalty, &apply(&row.grip, &v));
             if let Some(held) = held {
                 let held = apply(&row.grip, &held[n]);
                 for k in 0..D {
                     push[k] += held[k] - row.penalty * row.drive[k];
                 }
             }
-            for k in 0..D {
-                force[row.i][k] -= push[k];
-            }
+            add(row.i, &push);
         }
     }
 
@@ -236,14 +237,15 @@ impl<const D: usize> Solver<D> {
                 (grains.wall_traction[i], grains.wall_slip[i]) = ([0.0; D], [0.0; D]);
                 continue;
             }
-            let slip = row.slip(&work.velocity[i]);
+            let slip = row.slip(&work.current[i].velocity());
             let t = &grains.wall_traction[i];
             let x: Vector<D> = std::array::from_fn(|k| t[k] + row.penalty * slip[k]);
             let mut beyond = [0.0; D];
+            let tau = work.stress(i);
             for c in &self.friction.contacts[row.range.clone()] {
                 let along = c.along(&x);
                 let size = norm(&along);
-                let most = self.friction_limit(c, &work.tau[i]);
+                let most = self.friction_limit(c, &tau);
                 if size > most {
                     for k in 0..D {
                         beyond[k] += c.area * (1.0 - most / size) * along[k];

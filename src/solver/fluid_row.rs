@@ -1,0 +1,159 @@
+//! Particle i against its neighbours, four at a time: pair coefficients and sums (docs/theory.md, E1 to E4).
+//!
+//! Symbols: F = W'(r)/r <= 0, g = V_j F x, x = x_i - x_j, v = v_i - v_j, gamma shear rate.
+
+use crate::math::{Four, LANES, Lanes, Quad, Tensor, Vector};
+
+use super::Solver;
+use super::pair::Block;
+use super::record::{Record, motions};
+
+/// Least r^2 over h^2 that a pair form divides by: what fills the last group of a row has r = 0.
+const LEAST_DISTANCE2: f64 = 1e-12;
+
+/// Sums of one row while it is swept.
+pub(super) struct Row<const D: usize> {
+    /// sum (v_j - v_i) (x) g, walls twice [1/s].
+    pub(super) gradient: Tensor<D>,
+    /// -sum x_ij (x) g: the identity far from surfaces [1].
+    pub(super) moment: Tensor<D>,
+    /// gamma_pair^2 = (D + 2) sum V_j |F| (v_ij . x_ij)^2/r^2 [1/s^2].
+    pub(super) pair_shear2: f64,
+    /// Largest |v_ij|^2 [m^2/s^2].
+    pub(super) speed2: f64,
+}
+
+impl<const D: usize> Solver<D> {
+    /// a - b along axis k, nearest image.
+    #[inline(always)]
+    fn offset<L: Lanes>(&self, lanes: L, k: usize, a: Four<L>, b: Four<L>) -> Four<L> {
+        let d = a - b;
+        let length = self.periodic.length[k];
+        if length <= 0.0 {
+            return d;
+        }
+        let whole = Four::splat(lanes, length);
+        let half = Four::splat(lanes, 0.5 * length);
+        let minus_half = Four::splat(lanes, -0.5 * length);
+        d - d.where_greater(half, whole) + minus_half.where_greater(d, whole)
+    }
+
+    /// Writes the neighbours of particle i within the support to the front of `near`, filled up with i to whole groups;
+    /// returns their number.
+    #[inline(always)]
+    pub(super) fn find_near<L: Lanes>(
+        &self,
+        lanes: L,
+        records: &[Record],
+        i: usize,
+        x: &Vector<D>,
+        listed: &[u32],
+        near: &mut [u32],
+    ) -> usize {
+        let support = self.kernel.support();
+        // Just inside: the kernel vanishes there to the third order, and what is divided by it must not.
+        let limit = (1.0 - 1e-9) * support * support;
+        // Positive numbers are ordered as their bits are; 0, no neighbour, becomes the largest.
+        let limit_bits = limit.to_bits() - 1;
+        let mut here = [Four::splat(lanes, 0.0); D];
+        for k in 0..D {
+            here[k] = Four::splat(lanes, x[k]);
+        }
+        let mut count = 0;
+        for j in listed.as_chunks::<LANES>().0 {
+            let there = motions::<L, D>(lanes, records, j).x;
+            let mut r2 = Four::splat(lanes, 0.0);
+            for k in 0..D {
+                let d = self.offset(lanes, k, here[k], there[k]);
+                r2 += d * d;
+            }
+            for (j, r2) in j.iter().zip(r2.store().0) {
+                near[count] = *j;
+                count += usize::from(r2.to_bits().wrapping_sub(1) < limit_bits);
+            }
+        }
+        let full = count.next_multiple_of(LANES);
+        near[count..full].fill(i as u32);
+        full
+    }
+
+    /// Coefficients, appended to the block, and sums of particle i against the neighbours `near`. RINGS: particles are
+    /// rings.
+    #[inline(always)]
+    pub(super) fn fluid_row<L: Lanes, const RINGS: bool>(
+        &self,
+        lanes: L,
+        records: &[Record],
+        (i, xi, vi): (usize, &Vector<D>, &Vector<D>),
+        block: &mut Block<D>,
+        near: &[u32],
+    ) -> Row<D> {
+        let dissipation = D as f64 + 2.0;
+        let zero = Four::splat(lanes, 0.0);
+        let one = Four::splat(lanes, 1.0);
+        let least = Four::splat(lanes, LEAST_DISTANCE2 * self.kernel.h * self.kernel.h);
+        let inverse_2h = Four::splat(lanes, self.kernel.inverse_support());
+        let slope = Four::splat(lanes, -self.kernel.slope());
+        let pair_form = Four::splat(lanes, -2.0 * dissipation);
+        let ring = if RINGS { self.rings[i].hoop } else { 0.0 };
+        let ring = Four::splat(lanes, ring);
+        let to_section = Four::splat(lanes, 0.5 / std::f64::consts::TAU);
+        let (mut here, mut own) = ([zero; D], [zero; D]);
+        for k in 0..D {
+            here[k] = Four::splat(lanes, xi[k]);
+            own[k] = Four::splat(lanes, vi[k]);
+        }
+        let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
+        let (mut pair_shear2, mut speed2) = (zero, zero);
+        let Block { j, g, c, .. } = block;
+        let groups = near.as_chunks::<LANES>().0;
+        j.extend_from_slice(groups);
+        for j in groups {
+            let other = motions::<L, D>(lanes, records, j);
+            let (mut x, mut v) = ([zero; D], [zero; D]);
+            let (mut r2, mut v2, mut vx) = (zero, zero, zero);
+            for k in 0..D {
+                x[k] = self.offset(lanes, k, here[k], other.x[k]);
+                v[k] = own[k] - other.v[k];
+                r2 += x[k] * x[k];
+                v2 += v[k] * v[k];
+                vx += v[k] * x[k];
+            }
+            let t = (one - r2.sqrt() * inverse_2h).max(zero);
+            let mut vf = other.volume * (slope * t * t * t);
+            if RINGS {
+                vf = vf * ((ring + other.hoop) * to_section);
+            }
+            let inverse = one.over(r2.max(least) * vf);
+            let mut weights = [Quad::default(); D];
+            for b in 0..D {
+                let gb = vf * x[b];
+                weights[b] = gb.store();
+                for a in 0..D {
+                    gradient[a][b] -= v[a] * gb;
+                    if a <= b {
+                        moment[a][b] -= x[a] * gb;
+                    }
+                }
+            }
+            // |g| r = |vf| r^2; (v.x)^2/r^2 = (v.x)^2 vf (1/(r^2 vf)).
+            pair_shear2 -= vf * vf * inverse * vx * vx;
+            speed2 = speed2.max(v2);
+            g.push(weights);
+            c.push((pair_form * inverse).store());
+        }
+        let mut sums = Row {
+            gradient: [[0.0; D]; D],
+            moment: [[0.0; D]; D],
+            pair_shear2: dissipation * pair_shear2.sum(),
+            speed2: speed2.largest(),
+        };
+        for a in 0..D {
+            for b in 0..D {
+                sums.gradient[a][b] = gradient[a][b].sum();
+                sums.moment[a][b] = moment[a.min(b)][a.max(b)].sum();
+            }
+        }
+        sums
+    }
+}

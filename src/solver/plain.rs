@@ -1,0 +1,145 @@
+//! The sweeps over pairs as one would write them first: one pair after the other, no lanes. The fast sweeps are tested
+//! against these and timed against them; no scene uses them.
+
+use crate::math::{Tensor, Vector, add_outer, dot, scale, sub};
+use crate::state::State;
+
+use super::Solver;
+use super::fluid_row::Row;
+
+/// Particle i against neighbour j.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair<const D: usize> {
+    j: u32,
+    /// V_j grad_i W_ij [1/m].
+    g: Vector<D>,
+    /// 2 (D + 2)/(|g| r) [m^2].
+    c: f64,
+}
+
+/// Pairs row after row, and where each row ends.
+#[derive(Clone, Debug, Default)]
+pub struct PlainPairs<const D: usize> {
+    pairs: Vec<Pair<D>>,
+    ends: Vec<usize>,
+}
+
+impl<const D: usize> PlainPairs<D> {
+    /// Number of pairs, each counted from both sides.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.pairs.len()
+    }
+
+    fn row(&self, i: usize) -> &[Pair<D>] {
+        let start = if i == 0 { 0 } else { self.ends[i - 1] };
+        &self.pairs[start..self.ends[i]]
+    }
+}
+
+impl<const D: usize> Solver<D> {
+    /// Pair coefficients and sums over neighbours of every particle (docs/theory.md, E1 to E4), walls left out.
+    pub(super) fn plain_pairs(&self, state: &State<D>, into: &mut PlainPairs<D>) -> Vec<Row<D>> {
+        into.pairs.clear();
+        into.ends.clear();
+        let mut rows = Vec::with_capacity(state.grains.len());
+        for block in &self.lists.blocks {
+            for row in 0..block.rows() {
+                rows.push(self.plain_row(state, rows.len(), block.row(row), &mut into.pairs));
+                into.ends.push(into.pairs.len());
+            }
+        }
+        rows
+    }
+
+    fn plain_row(
+        &self,
+        state: &State<D>,
+        i: usize,
+        near: &[u32],
+        pairs: &mut Vec<Pair<D>>,
+    ) -> Row<D> {
+        let grains = &state.grains;
+        let support2 = self.kernel.support() * self.kernel.support();
+        let dissipation = D as f64 + 2.0;
+        let mut sums = Row {
+            gradient: [[0.0; D]; D],
+            moment: [[0.0; D]; D],
+            pair_shear2: 0.0,
+            speed2: 0.0,
+        };
+        for &j in near {
+            let n = j as usize;
+            let x = self
+                .periodic
+                .difference(&grains.position[i], &grains.position[n]);
+            let r2 = dot(&x, &x);
+            if r2 >= support2 || r2 == 0.0 {
+                continue;
+            }
+            let mut vf = self.volume[n] * self.kernel.f(r2.sqrt());
+            if self.geometry.is_axisymmetric() {
+                vf *= (self.rings[i].hoop + self.rings[n].hoop) * (0.5 / std::f64::consts::TAU);
+            }
+            let g = scale(vf, &x);
+            let v = sub(&grains.velocity[i], &grains.velocity[n]);
+            add_outer(&mut sums.gradient, -1.0, &v, &g);
+            add_outer(&mut sums.moment, -1.0, &x, &g);
+            let vx = dot(&v, &x);
+            sums.pair_shear2 -= dissipation * vf * vx * vx / r2;
+            sums.speed2 = sums.speed2.max(dot(&v, &v));
+            pairs.push(Pair {
+                j,
+                g,
+                c: 2.0 * dissipation / (-vf * r2),
+            });
+        }
+        sums
+    }
+
+    /// Velocity gradients sum_j (v_j - v_i) (x) g_ij.
+    pub(super) fn plain_gradients(
+        &self,
+        pairs: &PlainPairs<D>,
+        v: &[Vector<D>],
+        out: &mut [Tensor<D>],
+    ) {
+        for (i, gradient) in out.iter_mut().enumerate() {
+            *gradient = [[0.0; D]; D];
+            for pair in pairs.row(i) {
+                add_outer(gradient, 1.0, &sub(&v[pair.j as usize], &v[i]), &pair.g);
+            }
+        }
+    }
+
+    /// sum_j (tau_i + tau_j) g_ij and the pair form's share, with the harmonic mean of the pair viscosities.
+    pub(super) fn plain_forces(
+        &self,
+        pairs: &PlainPairs<D>,
+        v: &[Vector<D>],
+        tau: &[Tensor<D>],
+        out: &mut [Vector<D>],
+    ) {
+        let share = self.numerics.pair_viscosity_share;
+        for (i, force) in out.iter_mut().enumerate() {
+            *force = [0.0; D];
+            let eta = self.pair_viscosity[i];
+            for pair in pairs.row(i) {
+                let j = pair.j as usize;
+                let both = eta + self.pair_viscosity[j];
+                if both > 0.0 {
+                    let mean = 2.0 * eta * self.pair_viscosity[j] / both;
+                    let along = dot(&sub(&v[j], &v[i]), &pair.g);
+                    for k in 0..D {
+                        force[k] += share * mean * pair.c * along * pair.g[k];
+                    }
+                }
+                for a in 0..D {
+                    for b in 0..D {
+                        force[a] += (tau[i][a][b] + tau[j][a][b]) * pair.g[b];
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! The sweeps in lanes against the plain ones, and both architectures against each other.
+
+use crate::boundary::WallPoints;
+use crate::material::Material;
+use crate::math::{Arch, Geometry, Tensor, Vector};
+use crate::state::{Grains, Random, RestState, State};
+
+use super::plain::PlainPairs;
+use super::record::Record;
+use super::{Numerics, Periodic, Plan, Scheme, Solver, YieldForm};
+
+const SPACING: f64 = 0.01;
+
+fn numerics() -> Numerics {
+    Numerics {
+        spacing: SPACING,
+        smoothing_ratio: 1.6,
+        sound_speed: 20.0,
+        scheme: Scheme::Implicit,
+        courant: 0.5,
+        yield_form: YieldForm::Exact { iterations: 1 },
+        cap_time: 4.0,
+        density_diffusion: 0.1,
+        diffusion_gate_time: 1.0,
+        strain_relaxation_time: 0.05,
+        pair_viscosity_share: 0.05,
+        artificial_viscosity: 0.0,
+        solver_tolerance: 3e-4,
+        solver_max_iterations: 500,
+        sleep: false,
+        jitter: 0.0,
+        seed: 1,
+    }
+}
+
+/// Disordered sand under load, moving at random, that repeats along x.
+fn sand<const D: usize>(geometry: Geometry, count: usize) -> (Solver<D>, State<D>) {
+    let material = Material::sand_04();
+    let mut random = Random::new(11);
+    let mut grains = Grains {
+        exact_yield: true,
+        ..Grains::default()
+    };
+    let periodic = !geometry.is_axisymmetric();
+    let rho = 1.01 * material.rest_density();
+    for n in 0..count.pow(D as u32) {
+        let mut m = n;
+        let mut x = [0.0; D];
+        for c in &mut x {
+            *c = ((m % count) as f64 + 0.5 + 0.3 * random.symmetric()) * SPACING;
+            m /= count;
+        }
+        let mut v = [0.0; D];
+        for c in &mut v {
+            *c = random.symmetric();
+        }
+        let across = geometry.length_across(&x, 0.0);
+        grains.push(
+            n as u64,
+            0,
+            x,
+            v,
+            rho * across * SPACING.powi(D as i32),
+            rho,
+        );
+    }
+    let length = count as f64 * SPACING;
+    let plan = Plan {
+        numerics: numerics(),
+        gravity: std::array::from_fn(|k| if k == 1 { -9.81 } else { 0.0 }),
+        geometry,
+        lower: [0.0; D],
+        upper: [length; D],
+        periodic: Periodic {
+            lower: [0.0; D],
+            length: std::array::from_fn(|k| if k == 0 && periodic { length } else { 0.0 }),
+        },
+        materials: vec![material],
+        walls: WallPoints::default(),
+        ghost_depth: Vec::new(),
+        plates: Vec::new(),
+        sources: Vec::new(),
+        sinks: Vec::new(),
+    };
+    let mut state = State {
+        time: 0.0,
+        initial_mass: grains.present_mass(),
+        grains,
+        gates: Vec::new(),
+        inflows: Vec::new(),
+        drained: Vec::new(),
+        impulse: Vec::new(),
+        next_id: 0,
+        steps: 0,
+        iterations: 0,
+        step_size: 0.0,
+        rest: RestState::default(),
+        random,
+    };
+    let mut solver = Solver::new(plan, 1);
+    solver.start(&mut state);
+    (solver, state)
+}
+
+fn close(a: f64, b: f64, scale: f64) {
+    assert!((a - b).abs() <= 1e-12 * scale, "{a} {b} at {scale}");
+}
+
+fn agrees<const D: usize>(geometry: Geometry, count: usize) {
+    let (mut solver, state) = sand::<D>(geometry, count);
+    let n = state.grains.len();
+    let mut pairs = PlainPairs::default();
+    let rows = solver.plain_pairs(&state, &mut pairs);
+    assert!(pairs.count() > 10 * n);
+    for (row, kinematics) in rows.iter().zip(&solver.kinematics) {
+        close(row.speed2.sqrt(), kinematics.relative_speed, 3.0);
+    }
+    // The plain way through the rest of a row gives what the sweep gave, to rounding.
+    for (i, row) in rows.iter().enumerate() {
+        let plain = solver.finish(row, i, &state.grains.velocity[i]);
+        let fast = &solver.kinematics[i];
+        close(plain.divergence, fast.divergence, 1e3);
+        close(plain.shear, fast.shear, 1e3);
+        close(plain.correction, fast.correction, 1e2);
+        close(plain.pair_scale, fast.pair_scale, 1e2);
+    }
+    solver.sweep_pressure(&state, 1e-4);
+    let mut gradients: Vec<Tensor<D>> = vec![[[0.0; D]; D]; n];
+    let v = &state.grains.velocity;
+    solver.plain_gradients(&pairs, v, &mut gradients);
+    let tau: Vec<Tensor<D>> = (0..n)
+        .map(|i| solver.row_stress(i, &v[i], &gradients[i]))
+        .collect();
+    let mut records = vec![Record::default(); n];
+    solver.stress(v, &mut records, false);
+    let largest = tau.as_flattened().as_flattened();
+    let largest = largest.iter().fold(0.0f64, |m, t| m.max(t.abs()));
+    assert!(largest > 0.0);
+    for (record, tau) in records.iter().zip(&tau) {
+        let fast = record.stress::<D>();
+        for (a, b) in fast.as_flattened().iter().zip(tau.as_flattened()) {
+            close(*a, *b, largest);
+        }
+    }
+    let (mut plain, mut fast): (Vec<Vector<D>>, _) = (vec![[0.0; D]; n], vec![[0.0; D]; n]);
+    solver.plain_forces(&pairs, v, &tau, &mut plain);
+    solver.force(&records, &mut fast, false, |i, f| {
+        let mut f = *f;
+        for c in &mut f {
+            *c /= solver.width * solver.volume[i];
+        }
+        if solver.geometry.is_axisymmetric() {
+            f[0] += solver.ring_drag(i, &v[i], &tau[i], solver.numerics.pair_viscosity_share);
+        }
+        (f, 0.0)
+    });
+    let largest = plain
+        .as_flattened()
+        .iter()
+        .fold(0.0f64, |m, f| m.max(f.abs()));
+    for (a, b) in fast.as_flattened().iter().zip(plain.as_flattened()) {
+        close(*a, *b, largest);
+    }
+}
+
+#[test]
+fn sweeps_in_lanes_agree_with_plain_ones() {
+    agrees::<2>(Geometry::Planar { width: 0.3 }, 20);
+    agrees::<2>(Geometry::Axisymmetric, 20);
+    agrees::<3>(Geometry::Space, 9);
+}
+
+fn steps_agree<const D: usize>(geometry: Geometry, count: usize) {
+    let run = |arch: Arch| {
+        let (mut solver, mut state) = sand::<D>(geometry, count);
+        solver.arch = arch;
+        let inputs = super::StepInputs {
+            openings: &[],
+            rates: &[],
+        };
+        solver.lower = [-1.0; D];
+        solver.upper = [1.0; D];
+        for _ in 0..5 {
+            solver
+                .step(&mut state, 1.0, &inputs, &mut |_, _, _| ())
+                .unwrap();
+        }
+        state
+    };
+    assert_eq!(run(Arch::Portable), run(Arch::detect()));
+}
+
+#[test]
+fn every_architecture_gives_the_same_bits() {
+    steps_agree::<2>(Geometry::Planar { width: 0.3 }, 20);
+    steps_agree::<2>(Geometry::Axisymmetric, 20);
+    steps_agree::<3>(Geometry::Space, 9);
+}
