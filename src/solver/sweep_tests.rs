@@ -3,7 +3,7 @@
 use crate::boundary::WallPoints;
 use crate::material::Material;
 use crate::math::{Arch, Geometry, Tensor, Vector};
-use crate::state::{Grains, Random, RestState, State};
+use crate::state::{Grains, PoseTimes, Random, RestState, State};
 
 use super::plain::PlainPairs;
 use super::record::Record;
@@ -78,6 +78,7 @@ fn sand<const D: usize>(geometry: Geometry, count: usize) -> (Solver<D>, State<D
         materials: vec![material],
         walls: WallPoints::default(),
         ghost_depth: Vec::new(),
+        movers: Vec::new(),
         plates: Vec::new(),
         sources: Vec::new(),
         sinks: Vec::new(),
@@ -86,6 +87,7 @@ fn sand<const D: usize>(geometry: Geometry, count: usize) -> (Solver<D>, State<D
         time: 0.0,
         initial_mass: grains.present_mass(),
         grains,
+        pose: PoseTimes::default(),
         gates: Vec::new(),
         inflows: Vec::new(),
         drained: Vec::new(),
