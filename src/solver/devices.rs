@@ -151,8 +151,12 @@ impl<const D: usize> Solver<D> {
         let support = self.kernel.support();
         let dissipation = 2.0 * (D as f64 + 2.0);
         for (b, block) in self.lists.blocks.iter().enumerate() {
+            let mut wall_rows = block.wall_rows.iter().peekable();
             for row in 0..block.rows() {
                 let i = b * CHUNK + row;
+                let flat = wall_rows
+                    .next_if(|w| w.row as usize == row)
+                    .is_some_and(|w| w.flat);
                 let (xi, vi) = (&state.grains.position[i], &self.viscous.velocity[i]);
                 if block.wall_row(row).is_empty() {
                     continue;
@@ -177,7 +181,8 @@ impl<const D: usize> Solver<D> {
                     let seen = |a: Vector<D>| -> Vector<D> {
                         projection.map_or(a, |n| scale(dot(&n, &a), &n))
                     };
-                    let mut force = scale(-2.0 * self.normal_pressure()[i], &g);
+                    let push = if flat { seen(g) } else { g };
+                    let mut force = scale(-2.0 * self.normal_pressure()[i], &push);
                     force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau, &g))));
                     let pg = seen(g);
                     let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];

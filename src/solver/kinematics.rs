@@ -13,7 +13,7 @@ use super::Solver;
 use super::fluid_row::Row;
 use super::pair::{Block, WallRow};
 use super::record::Record;
-use super::wall_friction::Contact;
+use super::wall_friction::{Contact, Face};
 
 /// What the sweep leaves per particle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -123,8 +123,10 @@ impl<const D: usize> Solver<D> {
             q: [[0.0; D]; D],
             c: [[0.0; D]; D],
             cv: [0.0; D],
+            flat: false,
         };
         let mut any = false;
+        let mut face = Face::None;
         for &wall in near {
             let (x, r) = self.wall_offset(xi, wall);
             let weight = self.walls.weight[wall as usize];
@@ -138,9 +140,9 @@ impl<const D: usize> Solver<D> {
             let projection = self.wall_projection(xi, wall, state);
             let seen =
                 |a: &Vector<D>| -> Vector<D> { projection.map_or(*a, |n| scale(dot(&n, a), &n)) };
-            if let Some(n) = projection {
-                self.touch(contacts, first_contact, (i, wall), &n, &g);
-            }
+            let touched =
+                projection.filter(|n| self.touch(contacts, first_contact, (i, wall), n, &g));
+            face = face.with(touched);
             for k in 0..D {
                 w.s[k] += g[k];
             }
@@ -182,6 +184,12 @@ impl<const D: usize> Solver<D> {
             for c in 0..D {
                 sums.gradient[a][c] += wall_gradient[a][c];
             }
+        }
+        if let Face::Flat(n) = face {
+            // Sliding along it does nothing, whatever the lattices' phase: g along the face adds up to nothing.
+            w.flat = true;
+            w.s = scale(dot(&n, &w.s), &n);
+            return Some(w);
         }
         // Divergence takes the whole velocity (a tangential sum over a flat wall vanishes); the strain takes P v.
         let seen = trace(&wall_gradient);

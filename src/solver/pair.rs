@@ -22,6 +22,8 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) c: Tensor<D>,
     /// sum c (P g)(P g)^T v_w.
     pub(super) cv: Vector<D>,
+    /// Whether it sees one flat face with friction and nothing else: then s has no part along it.
+    pub(super) flat: bool,
 }
 
 /// A chunk of rows.

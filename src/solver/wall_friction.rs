@@ -60,6 +60,32 @@ pub(super) struct Friction<const D: usize> {
 /// Share of a face's area that `spread` gives the direction across all faces, where it has none.
 const ACROSS: f64 = 1e-2;
 
+/// What a particle sees of walls, as far as it tells whether that is one flat face with friction.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Face<const D: usize> {
+    /// Nothing yet.
+    None,
+    /// Points with friction and this normal only.
+    Flat(Vector<D>),
+    /// Something else, too.
+    Other,
+}
+
+impl<const D: usize> Face<D> {
+    /// With one more point; `normal` if it has friction.
+    pub(super) fn with(self, normal: Option<Vector<D>>) -> Self {
+        match (self, normal) {
+            (Face::None, Some(n)) => Face::Flat(n),
+            (Face::Flat(m), Some(n)) if same_normal(&m, &n) => self,
+            _ => Face::Other,
+        }
+    }
+}
+
+fn same_normal<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> bool {
+    dot(a, b) > 1.0 - 1e-9
+}
+
 impl<const D: usize> Contact<D> {
     /// P a.
     fn along(&self, a: &Vector<D>) -> Vector<D> {
@@ -68,7 +94,8 @@ impl<const D: usize> Contact<D> {
 }
 
 impl<const D: usize> Solver<D> {
-    /// Adds a wall point to the contacts of row i, which begin at `first`; n the normal there, g = V_i w grad W.
+    /// Adds a wall point to the contacts of row i, which begin at `first`; n the normal there, g = V_i w grad W. Says
+    /// whether the wall has friction.
     #[inline(always)]
     pub(super) fn touch(
         &self,
@@ -77,14 +104,14 @@ impl<const D: usize> Solver<D> {
         (i, wall): (usize, u32),
         n: &Vector<D>,
         g: &Vector<D>,
-    ) {
+    ) -> bool {
         let group = self.walls.group[wall as usize];
         if self.walls.groups[group as usize].friction == 0.0 {
-            return;
+            return false;
         }
         let area = -2.0 * dot(g, n) * self.volume[i] * self.width;
         let drive = scale(area, &self.walls.velocity[wall as usize]);
-        let same = |c: &&mut Contact<D>| c.group == group && dot(&c.normal, n) > 1.0 - 1e-9;
+        let same = |c: &&mut Contact<D>| c.group == group && same_normal(&c.normal, n);
         if let Some(contact) = contacts[first..].iter_mut().find(same) {
             contact.area += area;
             for k in 0..D {
@@ -99,6 +126,7 @@ impl<const D: usize> Solver<D> {
                 drive,
             });
         }
+        true
     }
 
     /// Makes the friction rows of a step from the contacts of the last sweep.
