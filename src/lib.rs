@@ -4,7 +4,7 @@
 //! [`component::Component`] is built: the one thing that steps, over one table of variables. Inside, [`shape`] is filled
 //! with particles of a [`material`], kept in [`state`], bounded by [`boundary`], advanced by [`solver`] with a [`kernel`]
 //! and sums of fixed order ([`math`]), and read by [`gauge`]. Outside, adapters show the component to the world: [`fmi`]
-//! packs it, `record` logs it and `bus` serves it (both in the words of `wire`), `validate` compares it with published data, `cli` is the program. The C functions
+//! packs it, `record` logs it and `bus` serves it (both in the words of `wire`), `validate` compares it with published data, `bench` measures what it costs, `cli` is the program. The C functions
 //! are the package in `fmu/`.
 //!
 //! No adapter holds physics, a rule about lifecycles or a list of variables; nothing below `scene` sees text from a user
@@ -29,6 +29,8 @@
     reason = "units stand in brackets, as in [m] and [kg/s], and are no links"
 )]
 
+#[cfg(feature = "cli")]
+pub mod bench;
 pub mod boundary;
 #[cfg(feature = "bus")]
 pub mod bus;

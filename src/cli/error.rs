@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::bench;
 #[cfg(feature = "bus")]
 use crate::bus::BusError;
 use crate::component;
@@ -40,6 +41,9 @@ pub enum CliError {
     /// A validation study could not be run or written.
     #[error("error: {0}")]
     Validate(#[from] validate::Error),
+    /// A benchmark could not be run, kept or read.
+    #[error("error: {0}")]
+    Bench(#[from] bench::Error),
     /// The log cannot be written, and the scene requires it.
     #[error("error: {0}")]
     Log(#[from] RecordError),
@@ -89,6 +93,8 @@ impl CliError {
             }
             Self::Fmu(fmi::Error::SceneTooLong { .. }) => 3,
             Self::Fmu(_) | Self::Validate(validate::Error::File { .. }) => 5,
+            Self::Bench(bench::Error::Scene { .. }) => 1,
+            Self::Bench(_) => 5,
             Self::Validate(_) => 1,
             Self::Log(_) | Self::File { .. } | Self::Content { .. } => 5,
             Self::Interrupted(_) => 130,

@@ -9,6 +9,7 @@
     reason = "this is the one layer that talks to a terminal"
 )]
 
+mod bench;
 mod clock;
 mod error;
 mod fmu;
@@ -53,6 +54,8 @@ enum Command {
     Serve(serve::Args),
     /// Compare runs with published data and exact solutions, and write docs/validation
     Validate(validate::Args),
+    /// Time the solver and whole scenes, and write docs/performance.md
+    Bench(bench::Args),
     /// Print the JSON Schema of scene files
     Schema(schema::Args),
 }
@@ -86,6 +89,7 @@ fn dispatch(command: &Command) -> Result<(), CliError> {
         #[cfg(feature = "bus")]
         Command::Serve(args) => serve::run(args),
         Command::Validate(args) => validate::run(args),
+        Command::Bench(args) => bench::run(args),
         Command::Schema(args) => schema::run(args),
     }
 }

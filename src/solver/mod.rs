@@ -18,7 +18,7 @@ mod lists;
 mod numerics;
 mod pair;
 mod paper_a;
-#[cfg(test)]
+mod passes;
 mod plain;
 mod plastic;
 mod pressure;
@@ -39,6 +39,7 @@ pub use error::SolverError;
 pub use grid::Periodic;
 pub use numerics::{Numerics, Scheme, YieldForm};
 pub use paper_a::PaperA;
+pub use passes::{Pass, Passes};
 pub use validity::Validity;
 
 use std::sync::Arc;

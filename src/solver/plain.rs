@@ -1,11 +1,12 @@
 //! The sweeps over pairs as one would write them first: one pair after the other, no lanes. The fast sweeps are tested
-//! against these and timed against them; no scene uses them.
+//! against these and timed against them ([`super::Passes`]); no scene uses them.
 
 use crate::math::{Tensor, Vector, add_outer, dot, scale, sub};
 use crate::state::State;
 
 use super::Solver;
 use super::fluid_row::Row;
+use super::pressure::Prediction;
 
 /// Particle i against neighbour j.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +20,7 @@ pub(super) struct Pair<const D: usize> {
 
 /// Pairs row after row, and where each row ends.
 #[derive(Clone, Debug, Default)]
-pub struct PlainPairs<const D: usize> {
+pub(super) struct PlainPairs<const D: usize> {
     pairs: Vec<Pair<D>>,
     ends: Vec<usize>,
 }
@@ -27,7 +28,7 @@ pub struct PlainPairs<const D: usize> {
 impl<const D: usize> PlainPairs<D> {
     /// Number of pairs, each counted from both sides.
     #[must_use]
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.pairs.len()
     }
 
@@ -95,6 +96,61 @@ impl<const D: usize> Solver<D> {
             });
         }
         sums
+    }
+
+    /// v*, diffusion of density and resistance of every particle (docs/theory.md, E7, E8), without walls, bulk friction and
+    /// artificial viscosity.
+    pub(super) fn plain_pressure(
+        &self,
+        state: &State<D>,
+        pairs: &PlainPairs<D>,
+        dt: f64,
+        out: &mut [Prediction<D>],
+    ) {
+        let numerics = &self.numerics;
+        let strength = 2.0 * numerics.density_diffusion * self.kernel.h / numerics.sound_speed;
+        for (i, o) in out.iter_mut().enumerate() {
+            *o = Prediction::default();
+            let mut force = [0.0; D];
+            for pair in pairs.row(i) {
+                let j = pair.j as usize;
+                for k in 0..D {
+                    force[k] -= (self.pressure[i] + self.pressure[j]) * pair.g[k];
+                }
+                o.diffusion += strength * self.plain_diffusion(state, i, pair);
+                let both = self.pair_viscosity[i] + self.pair_viscosity[j];
+                if both > 0.0 {
+                    let mean = 2.0 * self.pair_viscosity[i] * self.pair_viscosity[j] / both;
+                    add_outer(&mut o.resistance, mean * pair.c, &pair.g, &pair.g);
+                }
+            }
+            if self.geometry.is_axisymmetric() {
+                force[0] += self.pressure[i] * (self.rings[i].hoop + self.rings[i].axis);
+            }
+            let specific = self.specific_volume(state, i);
+            for k in 0..D {
+                let a = self.gravity[k] + specific * force[k];
+                o.velocity[k] = state.grains.velocity[i][k] + dt * a;
+            }
+        }
+    }
+
+    /// What a pair adds to the diffusion of density, gated at rest and without the hydrostatic part.
+    fn plain_diffusion(&self, state: &State<D>, i: usize, pair: &Pair<D>) -> f64 {
+        let numerics = &self.numerics;
+        let j = pair.j as usize;
+        let sum = self.pressure[i] + self.pressure[j];
+        if sum <= 0.0 {
+            return 0.0;
+        }
+        let (rho_i, rho_j) = (state.grains.density[i], state.grains.density[j]);
+        let shear = 0.5 * (self.kinematics[i].shear + self.kinematics[j].shear);
+        let open = (numerics.diffusion_gate_time * shear).min(1.0);
+        let loaded = (sum / (rho_i * self.gravity_norm * numerics.spacing)).min(1.0);
+        let still = 0.5 * (rho_i + rho_j) * dot(&self.gravity, &pair.g) * loaded;
+        // V F = -|g|^2 c/(2 (D + 2)).
+        let vf = -dot(&pair.g, &pair.g) * pair.c / (2.0 * (D as f64 + 2.0));
+        open * ((self.pressure[i] - self.pressure[j]) * vf - still)
     }
 
     /// Velocity gradients sum_j (v_j - v_i) (x) g_ij.

@@ -6,6 +6,8 @@
 )]
 
 mod architecture;
+#[cfg(feature = "cli")]
+mod bench;
 #[cfg(all(feature = "bus", feature = "cli"))]
 mod bus;
 #[cfg(feature = "cli")]

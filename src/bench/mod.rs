@@ -1,0 +1,100 @@
+//! What runs cost: the solver's sweeps and whole scenes timed, stored with the machine, and docs/performance.md.
+//!
+//! [`speed`] asks where the time goes: [`kernels`] times sweeps alone against their plain forms and a [`roofline`],
+//! [`scenes`] whole components. A [`SpeedRun`] keeps all of it; [`page`] says what was asked and what came out.
+//!
+//! It prints nothing: `cli` shows progress. Times are CPU times wherever they can be, medians of repetitions, and what is
+//! compared is timed in turns, so that others on the machine disturb both alike.
+
+pub mod clock;
+pub mod kernels;
+pub mod machine;
+pub mod page;
+pub mod roofline;
+pub mod scenes;
+pub mod speed;
+
+pub use machine::Machine;
+pub use speed::{Choices, SpeedRun};
+
+use std::path::{Path, PathBuf};
+
+/// What can go wrong while something is timed or kept.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A scene was refused or a step failed: nothing that a user typed, so a defect.
+    #[error("bench scene {scene}: {why}")]
+    Scene {
+        /// The scene.
+        scene: String,
+        /// What it said.
+        why: String,
+    },
+    /// A file could not be read or written.
+    #[error("cannot {action} {}: {source}", path.display())]
+    File {
+        /// What was tried, as a verb phrase.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A stored run that this program cannot read.
+    #[error("{} is no stored run of this program: {why}; run `sandgate bench speed` anew", path.display())]
+    Stored {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+}
+
+/// Writes a run to a file; folders are made.
+///
+/// # Errors
+/// [`Error::File`].
+pub fn store(path: &Path, run: &SpeedRun) -> Result<(), Error> {
+    let failed = |action| {
+        move |source| Error::File {
+            action,
+            path: path.to_path_buf(),
+            source,
+        }
+    };
+    let mut text = serde_json::to_string_pretty(run).map_err(|e| failed("encode")(e.into()))?;
+    text.push('\n');
+    write(path, &text)
+}
+
+/// Reads a stored run.
+///
+/// # Errors
+/// [`Error::File`], [`Error::Stored`].
+pub fn stored(path: &Path) -> Result<SpeedRun, Error> {
+    let text = std::fs::read_to_string(path).map_err(|source| Error::File {
+        action: "read",
+        path: path.to_path_buf(),
+        source,
+    })?;
+    serde_json::from_str(&text).map_err(|why| Error::Stored {
+        path: path.to_path_buf(),
+        why: why.to_string(),
+    })
+}
+
+/// Writes a text to a file; folders are made.
+///
+/// # Errors
+/// [`Error::File`].
+pub fn write(path: &Path, text: &str) -> Result<(), Error> {
+    let failed = |source| Error::File {
+        action: "write",
+        path: path.to_path_buf(),
+        source,
+    };
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(failed)?;
+    }
+    std::fs::write(path, text).map_err(failed)
+}

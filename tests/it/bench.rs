@@ -1,0 +1,82 @@
+//! `sandgate bench` from outside, and the page that lies in the repository. Nothing here asserts a time.
+
+use std::path::Path;
+use std::process::Command;
+
+use sandgate::bench::{page, stored};
+
+fn bench(arguments: &[&str], folder: &Path) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_sandgate"))
+        .arg("bench")
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (
+        output.status.code(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
+}
+
+#[test]
+fn a_quick_run_is_kept_and_makes_its_page() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let quick = ["speed", "--quick", "--name", "try", "--page", "page.md"];
+    let (code, out, error) = bench(&quick, folder.path());
+    assert_eq!(code, Some(0), "{error}");
+    let run = stored(&folder.path().join("benches/runs/try.json")).unwrap();
+    assert!(run.quick);
+    let text = std::fs::read_to_string(folder.path().join("page.md")).unwrap();
+    assert_eq!(text, page::text(&run));
+    assert!(text.starts_with(page::MADE) && text.contains("judge nothing"));
+    for demand in page::demands(&run) {
+        assert!(out.contains(demand.what) && text.contains(&demand.measured));
+    }
+    let no_number = ["NaN", "inf "];
+    assert!(no_number.iter().all(|word| !text.contains(word)), "{text}");
+    for kernels in &run.kernels {
+        assert!(kernels.disagreement < 1e-11);
+        assert_eq!(kernels.passes.len(), 5);
+    }
+    assert!(run.paper_a.ratio().is_finite() && run.paper_a.ratio() > 0.0);
+    // The page is written again from what was kept, without timing anything.
+    let again = [
+        "speed",
+        "--name",
+        "try",
+        "--only-page",
+        "--page",
+        "again.md",
+    ];
+    let (code, _, error) = bench(&again, folder.path());
+    assert_eq!(code, Some(0), "{error}");
+    assert_eq!(
+        std::fs::read_to_string(folder.path().join("again.md")).unwrap(),
+        text
+    );
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    for (arguments, said) in [
+        (&["speed", "--paper-a-budget", "0"][..], "above 0"),
+        (&["speed", "--name", "../x"], "letters"),
+        (&["speed", "--only-page"], "--page"),
+    ] {
+        let (code, _, error) = bench(arguments, folder.path());
+        assert_eq!(code, Some(2), "{error}");
+        assert!(error.contains(said), "{error}");
+    }
+    let missing = ["speed", "--only-page", "--page", "page.md"];
+    let (code, _, error) = bench(&missing, folder.path());
+    assert_eq!(code, Some(5));
+    assert!(error.contains("speed.json"), "{error}");
+    std::fs::create_dir_all(folder.path().join("benches/runs")).unwrap();
+    std::fs::write(folder.path().join("benches/runs/speed.json"), "{}").unwrap();
+    let (code, _, error) = bench(&missing, folder.path());
+    assert_eq!(code, Some(5));
+    assert!(error.contains("anew"), "{error}");
+}
