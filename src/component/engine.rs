@@ -127,6 +127,9 @@ pub(crate) trait Engine: Send {
     /// Wall and gate particles where they are now, for pictures [m].
     fn wall_points(&self) -> Vec<[f64; 3]>;
 
+    /// How long walls that move as a whole have moved [s].
+    fn wall_time(&self) -> f64;
+
     /// Threads of the sweeps, 0 for all cores; results do not depend on it.
     fn set_threads(&mut self, threads: usize);
 }

@@ -291,6 +291,12 @@ impl Component {
         self.engine.wall_points()
     }
 
+    /// How long walls that move as a whole have moved: since the start, for pictures [s].
+    #[must_use]
+    pub fn wall_time(&self) -> f64 {
+        self.engine.wall_time()
+    }
+
     /// Threads used by sweeps: results do not depend on it. 0 means all cores. A new component has 1. The same as
     /// setting `solver.threads`.
     pub fn set_threads(&mut self, threads: usize) {

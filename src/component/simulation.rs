@@ -317,6 +317,10 @@ impl<const D: usize> Engine for Simulation<D> {
             .collect()
     }
 
+    fn wall_time(&self) -> f64 {
+        self.state.pose.now
+    }
+
     fn set_threads(&mut self, threads: usize) {
         self.solver.set_threads(threads);
     }

@@ -6,7 +6,9 @@ use super::foxglove::{
 };
 use super::messages::{Gauge, MassLedger, StepStats, Validity};
 use crate::component::{self, Causality, Component, StepReport, ValueReference, VariableTable};
+use crate::scene::Wall;
 use crate::solver::StepBound;
+use nalgebra::{Unit, UnitQuaternion};
 use prost_types::Timestamp;
 
 /// The frame of all positions.
@@ -191,12 +193,20 @@ pub fn point_cloud(component: &Component) -> PointCloud {
     }
 }
 
-/// Where each gate's frame is now: the plate moves from its closed place by its actual opening.
+/// Where the frames of gates and of walls that move as a whole are now: a plate moves from its closed place by its actual
+/// opening, a wall as its scene says.
 ///
 /// # Errors
 /// Those of [`Component::get`].
 pub fn gate_frames(component: &Component) -> Result<Vec<FrameTransform>, component::Error> {
-    let mut frames = Vec::new();
+    let time = component.wall_time();
+    let rigid = component.scene().walls.iter().filter(|w| w.rigid);
+    let mut frames: Vec<FrameTransform> = rigid
+        .map(|wall| FrameTransform {
+            timestamp: Some(timestamp(component.time())),
+            ..wall_frame(wall, time)
+        })
+        .collect();
     for gate in &component.scene().gates {
         let name = format!("gate.{}.actual_opening", gate.name);
         let mut opening = [gate.start];
@@ -219,6 +229,34 @@ pub fn gate_frames(component: &Component) -> Result<Vec<FrameTransform>, compone
     Ok(frames)
 }
 
+/// Frame of a wall that has moved for `time` [s]: turned by w t about the centre, which has come along.
+fn wall_frame(wall: &Wall, time: f64) -> FrameTransform {
+    let (angle, centre, [ax, ay, az]) = match wall.rotation {
+        Some(r) => (r.rate * time, r.centre, r.axis),
+        None => (0.0, [0.0; 3], [0.0, 0.0, 1.0]),
+    };
+    let axis = Unit::new_normalize(nalgebra::Vector3::new(ax, ay, az));
+    let turn = UnitQuaternion::from_axis_angle(&axis, angle);
+    let turned = turn * nalgebra::Vector3::from(centre);
+    let shift = |k: usize| centre[k] + time * wall.velocity[k] - turned[k];
+    FrameTransform {
+        timestamp: None,
+        parent_frame_id: WORLD.to_owned(),
+        child_frame_id: format!("wall.{}", wall.name),
+        translation: Some(Vector3 {
+            x: shift(0),
+            y: shift(1),
+            z: shift(2),
+        }),
+        rotation: Some(Quaternion {
+            x: turn.i,
+            y: turn.j,
+            z: turn.k,
+            w: turn.w,
+        }),
+    }
+}
+
 /// No rotation.
 pub(super) const IDENTITY: Quaternion = Quaternion {
     x: 0.0,
@@ -238,6 +276,36 @@ pub(super) fn pose([x, y, z]: [f64; 3], orientation: Quaternion) -> Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A point of a drum after a quarter turn about a centre that comes along.
+    #[test]
+    fn a_turning_wall_has_its_frame_where_it_is() {
+        let wall = Wall {
+            name: "drum".to_owned(),
+            geometry: crate::scene::WallGeometry::Box {
+                lower: [0.0; 3],
+                upper: [1.0; 3],
+            },
+            slip: crate::scene::Slip::NoSlip,
+            rigid: true,
+            velocity: [0.5, 0.0, 0.0],
+            rotation: Some(crate::scene::Rotation {
+                rate: std::f64::consts::FRAC_PI_4,
+                centre: [1.0, 2.0, 0.0],
+                axis: [0.0, 0.0, 1.0],
+            }),
+        };
+        let frame = wall_frame(&wall, 2.0);
+        let (t, q) = (frame.translation.unwrap(), frame.rotation.unwrap());
+        let turn = UnitQuaternion::new_normalize(nalgebra::Quaternion::new(q.w, q.x, q.y, q.z));
+        // One to the right of the centre: then above it, and the centre at x = 2.
+        let x =
+            turn * nalgebra::Vector3::new(2.0, 2.0, 0.0) + nalgebra::Vector3::new(t.x, t.y, t.z);
+        assert!(
+            (x - nalgebra::Vector3::new(2.0, 3.0, 0.0)).norm() < 1e-12,
+            "{x}"
+        );
+    }
 
     #[test]
     fn times_become_the_nearest_nanosecond() {

@@ -66,13 +66,13 @@ pub fn particles(base: &str) -> String {
     format!("{base}/out/particles")
 }
 
-/// Key of [`SceneUpdate`](super::foxglove::SceneUpdate): walls and gates, each gate in a frame of its own.
+/// Key of [`SceneUpdate`](super::foxglove::SceneUpdate): walls and gates, each gate and moving wall in a frame of its own.
 #[must_use]
 pub fn scene(base: &str) -> String {
     format!("{base}/out/scene")
 }
 
-/// Key of [`FrameTransform`](super::foxglove::FrameTransform): where the gates' frames are.
+/// Key of [`FrameTransform`](super::foxglove::FrameTransform): where these frames are.
 #[must_use]
 pub fn frames(base: &str) -> String {
     format!("{base}/out/frames")

@@ -1,7 +1,7 @@
 //! Scene → what viewers draw: walls, gates, inflows, outflows and gauges as lines, boxes and texts.
 //!
-//! A gate is drawn closed in a frame of its own, `gate.NAME`; [`gate_frames`](super::convert::gate_frames) say where
-//! that frame is. Particles are in [`point_cloud`](super::convert::point_cloud).
+//! A gate is drawn closed in a frame of its own, `gate.NAME`, and a wall that moves as a whole where it starts in
+//! `wall.NAME`; [`gate_frames`](super::convert::gate_frames) say where these frames are. Particles are in [`point_cloud`](super::convert::point_cloud).
 
 use super::convert::{IDENTITY, WORLD, pose, timestamp};
 use super::foxglove::{
@@ -69,7 +69,13 @@ impl Artist<'_> {
     }
 
     fn wall(&self, wall: &Wall) -> SceneEntity {
-        let mut entity = self.entity(format!("wall.{}", wall.name), WORLD.to_owned());
+        let id = format!("wall.{}", wall.name);
+        let frame = if wall.rigid {
+            id.clone()
+        } else {
+            WORLD.to_owned()
+        };
+        let mut entity = self.entity(id, frame);
         match &wall.geometry {
             WallGeometry::Polyline { points, closed } => {
                 let mut corners: Vec<Point> = points.iter().map(|&[x, y]| [x, y, 0.0]).collect();

@@ -4,19 +4,21 @@ mod columns;
 mod contact;
 mod controls;
 mod incline;
+mod janssen;
 mod rest;
 mod silo;
 
 use super::Study;
 
 /// All studies, in the order in which they are listed and run.
-pub const ALL: [Study; 8] = [
+pub const ALL: [Study; 9] = [
     incline::STUDY,
     columns::STUDY,
     columns::axisymmetric::STUDY,
     columns::paper_a::STUDY,
     contact::STUDY,
     rest::STUDY,
+    janssen::STUDY,
     silo::STUDY,
     controls::STUDY,
 ];
