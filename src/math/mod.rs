@@ -8,7 +8,6 @@
 
 mod geometry;
 mod lanes;
-mod sum;
 mod workers;
 
 pub use geometry::Geometry;
@@ -16,7 +15,6 @@ pub use geometry::Geometry;
 pub use lanes::Inlined;
 pub(crate) use lanes::in_lanes;
 pub use lanes::{Arch, Four, LANES, Lanes, Portable, Quad};
-pub use sum::{maximum, sum_rows};
 pub use workers::{CHUNK, Workers};
 
 /// A vector of D components.

@@ -4,14 +4,17 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::thread::JoinHandle;
 
-use super::sum::chunks;
-
 /// Rows per chunk. Part of the results: partial sums are formed per chunk, so it must not depend on the machine.
 pub const CHUNK: usize = 128;
 
 /// Sweeps of fewer rows run in the calling thread: handing them round costs more than it saves (a column of 1856
 /// particles took 4.7 CPU seconds on two threads and 4.1 on one, in no less time). Results do not depend on it.
 const PARALLEL_FROM: usize = 2500;
+
+/// Number of chunks of n rows.
+fn chunks(n: usize) -> usize {
+    n.div_ceil(CHUNK)
+}
 
 /// Runs sweeps over rows on a set number of threads. Results never depend on that number.
 #[derive(Debug, Default)]
@@ -216,22 +219,47 @@ impl Workers {
         }
     }
 
-    /// Sum of f over the chunks of 0..n, added in chunk order.
-    #[must_use]
-    pub fn chunk_sums(&self, n: usize, f: impl Fn(Range<usize>) -> f64 + Sync) -> f64 {
+    /// What f gives for the chunks of 0..n, in their order.
+    fn chunks<R: Send>(&self, n: usize, f: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
         let range = |c: usize| c * CHUNK..((c + 1) * CHUNK).min(n);
         match self.pool_for(n) {
-            None => (0..chunks(n)).fold(0.0, |s, c| s + f(range(c))),
-            Some(pool) => {
-                let parts: Vec<f64> = pool.run(|| {
-                    (0..chunks(n))
-                        .into_par_iter()
-                        .map(|c| f(range(c)))
-                        .collect()
-                });
-                parts.iter().fold(0.0, |s, v| s + v)
-            }
+            None => (0..chunks(n)).map(|c| f(range(c))).collect(),
+            Some(pool) => pool.run(|| {
+                (0..chunks(n))
+                    .into_par_iter()
+                    .map(|c| f(range(c)))
+                    .collect()
+            }),
         }
+    }
+
+    /// sum_i f(i) for i < n, partial sums of chunks added in their order: the same bits for any number of threads.
+    #[must_use]
+    pub fn sums<const K: usize>(&self, n: usize, f: impl Fn(usize) -> [f64; K] + Sync) -> [f64; K] {
+        let part = |range: Range<usize>| range.fold([0.0; K], |s, i| super::add(&s, &f(i)));
+        let parts = self.chunks(n, part);
+        parts.iter().fold([0.0; K], |s, p| super::add(&s, p))
+    }
+
+    /// Largest of each of f(i)'s numbers for i < n, at least 0. NaN values win, so that they are seen.
+    #[must_use]
+    pub fn largest<const K: usize>(
+        &self,
+        n: usize,
+        f: impl Fn(usize) -> [f64; K] + Sync,
+    ) -> [f64; K] {
+        let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
+        let both =
+            |a: [f64; K], b: [f64; K]| -> [f64; K] { std::array::from_fn(|k| larger(a[k], b[k])) };
+        let parts = self.chunks(n, |range| range.fold([0.0; K], |m, i| both(m, f(i))));
+        parts.into_iter().fold([0.0; K], both)
+    }
+
+    /// The first i < n for which `is_bad`.
+    #[must_use]
+    pub fn first_bad(&self, n: usize, is_bad: impl Fn(usize) -> bool + Sync) -> Option<usize> {
+        let parts = self.chunks(n, |mut range| range.find(|&i| is_bad(i)));
+        parts.into_iter().flatten().next()
     }
 }
 
@@ -244,11 +272,26 @@ mod tests {
         let value = |i: usize| (i as f64 * 0.37).sin() / (1.0 + i as f64);
         let sum = |threads| {
             let w = Workers::new(threads);
-            w.install(10_007, || super::super::sum_rows(&w, 10_007, value))
-                .to_bits()
+            w.install(10_007, || w.sums(10_007, |i| [value(i)]))[0].to_bits()
         };
         assert_eq!(sum(1), sum(2));
         assert_eq!(sum(1), sum(7));
+    }
+
+    #[test]
+    fn the_largest_is_found_and_nan_is_larger() {
+        let values: Vec<f64> = (0..5000).map(|i| f64::from((i * 7919) % 5003)).collect();
+        for threads in [1, 3] {
+            let w = Workers::new(threads);
+            assert_eq!(w.largest(5000, |i| [values[i], -values[i]]), [5002.0, 0.0]);
+            let [seen] = w.largest(5000, |i| [if i == 777 { f64::NAN } else { values[i] }]);
+            assert!(seen.is_nan());
+            assert_eq!(
+                w.first_bad(5000, |i| i > 3000 && values[i] > 10.0),
+                Some(3001)
+            );
+            assert_eq!(w.first_bad(5000, |i| values[i] < 0.0), None);
+        }
     }
 
     #[test]

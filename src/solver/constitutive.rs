@@ -9,10 +9,12 @@ use super::{Solver, SolverError};
 /// Shear rates below this count as none [1/s]: far below any that matters, far above rounding.
 const STILL: f64 = 1e-12;
 
-/// Pressure, viscosity and inertial number of one particle.
-#[derive(Default)]
-struct Response {
+/// What the rheology makes of one particle.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Response {
     pressure: f64,
+    /// With bulk friction.
+    normal_pressure: f64,
     viscosity: f64,
     inertial_number: f64,
 }
@@ -22,24 +24,24 @@ impl<const D: usize> Solver<D> {
     pub(super) fn advance_density(&self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
         let relax = 1.0 - (-dt / self.numerics.strain_relaxation_time).exp();
         let grains = &mut state.grains;
-        for i in 0..grains.len() {
+        let phase = &grains.phase;
+        let (density, relaxed) = (&mut grains.density, &mut grains.relaxed_shear);
+        self.workers.both(density, relaxed, |i, rho, relaxed| {
             let k = &self.kinematics[i];
             // Exact for a constant divergence, and positive whatever the step.
-            let rho = grains.density[i] * (-dt * k.divergence).exp();
-            if !(rho.is_finite() && rho > 0.0) {
-                return Err(SolverError::NotFinite {
-                    particle: grains.id[i],
-                    time: state.time,
-                    quantity: "density",
-                    position: crate::solver::three(&grains.position[i]),
-                });
-            }
-            let material = &self.materials[grains.phase[i] as usize];
-            grains.density[i] = rho.max(material.parted_density * material.rest_density());
-            let rate = k.correction * k.shear;
-            grains.relaxed_shear[i] += relax * (rate - grains.relaxed_shear[i]);
+            let new = *rho * (-dt * k.divergence).exp();
+            let material = &self.materials[phase[i] as usize];
+            let least = material.parted_density * material.rest_density();
+            // NaN stays NaN, to be found below.
+            *rho = if new < least { least } else { new };
+            *relaxed += relax * (k.correction * k.shear - *relaxed);
+            []
+        });
+        let fine = |i: usize| grains.density[i].is_finite() && grains.density[i] > 0.0;
+        match self.workers.first_bad(grains.len(), |i| !fine(i)) {
+            None => Ok(()),
+            Some(bad) => Err(self.not_finite(state, "density", |n| n != bad)),
         }
-        Ok(())
     }
 
     /// V = m / (rho width): areas in the plane, volumes of rings and in space.
@@ -51,39 +53,38 @@ impl<const D: usize> Solver<D> {
 
     /// Pressures and viscosities from the state and its kinematics.
     pub(super) fn respond(&mut self, state: &State<D>) {
-        let n = state.grains.len();
-        self.pressure.resize(n, 0.0);
-        self.viscosity.resize(n, 0.0);
-        self.pair_viscosity.resize(n, 0.0);
-        self.inertial_number.resize(n, 0.0);
-        if self.materials.iter().any(|m| m.bulk_friction > 0.0) {
-            self.normal_pressure.resize(n, 0.0);
-        }
-        for i in 0..n {
-            let k = self.kinematics[i];
-            let response = self.granular(
-                &self.materials[state.grains.phase[i] as usize],
-                state.grains.density[i],
-                state.grains.relaxed_shear[i],
-                k.shear,
-                k.correction,
-            );
-            self.pressure[i] = response.pressure;
-            if let Some(p) = self.normal_pressure.get_mut(i) {
-                let m = &self.materials[state.grains.phase[i] as usize];
-                *p = response.pressure
+        let grains = &state.grains;
+        let n = grains.len();
+        let bulk = self.materials.iter().any(|m| m.bulk_friction > 0.0);
+        let mut responses = std::mem::take(&mut self.responses);
+        responses.resize(n, Response::default());
+        self.workers.each(&mut responses, |i, response| {
+            let k = &self.kinematics[i];
+            let material = &self.materials[grains.phase[i] as usize];
+            let (rho, relaxed) = (grains.density[i], grains.relaxed_shear[i]);
+            *response = self.granular(material, rho, relaxed, k.shear, k.correction);
+            if bulk {
+                response.normal_pressure = response.pressure
                     + bulk_pressure(
-                        m.bulk_friction,
+                        material.bulk_friction,
                         response.pressure,
                         k.divergence,
                         k.correction * k.shear,
-                        state.grains.density[i] * self.kernel.h * self.numerics.sound_speed,
+                        rho * self.kernel.h * self.numerics.sound_speed,
                     );
             }
-            self.viscosity[i] = response.viscosity;
-            self.inertial_number[i] = response.inertial_number;
-            self.pair_viscosity[i] = response.viscosity * k.pair_scale;
+        });
+        fill(&mut self.pressure, &responses, |r| r.pressure);
+        fill(&mut self.viscosity, &responses, |r| r.viscosity);
+        fill(&mut self.inertial_number, &responses, |r| r.inertial_number);
+        if bulk {
+            fill(&mut self.normal_pressure, &responses, |r| r.normal_pressure);
         }
+        self.pair_viscosity.clear();
+        let scales = self.kinematics.iter().map(|k| k.pair_scale);
+        let scaled = responses.iter().zip(scales).map(|(r, s)| r.viscosity * s);
+        self.pair_viscosity.extend(scaled);
+        self.responses = responses;
     }
 
     /// [A] eqs. 6, 7, 41, 43, 44 with the cap.
@@ -128,6 +129,13 @@ impl<const D: usize> Solver<D> {
             pressure,
             viscosity,
             inertial_number,
+            ..Response::default()
         }
     }
+}
+
+/// One quantity of all responses.
+fn fill(out: &mut Vec<f64>, responses: &[Response], of: impl Fn(&Response) -> f64) {
+    out.clear();
+    out.extend(responses.iter().map(of));
 }

@@ -2,7 +2,7 @@
 //! blocks, started from the last step's change. With the exact yield it is solved a few times a step, each time with
 //! the stress of the last projection beside it (`plastic`).
 
-use crate::math::{Tensor, Vector, apply, dot, sub, sum_rows};
+use crate::math::{Tensor, Vector, apply, dot, scale, sub};
 use crate::state::State;
 
 use super::lists::mean;
@@ -227,9 +227,10 @@ impl<const D: usize> Solver<D> {
                 residual[i][k] -= dt * push[k];
             }
         });
-        sum_rows(&self.workers, residual.len(), |i| {
-            dot(&residual[i], &residual[i])
-        })
+        let [norm2] = self
+            .workers
+            .sums(residual.len(), |i| [dot(&residual[i], &residual[i])]);
+        norm2
     }
 
     /// tolerance x |M (v* - u)|, at least that of one step's fall; u is the walls' mean velocity where walls are touched,
@@ -240,21 +241,22 @@ impl<const D: usize> Solver<D> {
         let mut frame = if touched {
             mean(&self.walls.velocity, &self.walls.weight)
         } else {
-            let rows: Vec<Vector<D>> = self.prediction.iter().map(|p| p.velocity).collect();
-            mean(&rows, mass)
+            let momentum = |i: usize| scale(mass[i], &self.prediction[i].velocity);
+            let [total] = self.workers.sums(mass.len(), |i| [mass[i]]);
+            let sum = self.workers.sums(mass.len(), momentum);
+            scale(1.0 / total, &sum)
         };
         if self.geometry.is_axisymmetric() {
             // The axis stands still.
             frame[0] = 0.0;
         }
         let fall = dt * self.gravity_norm;
-        let scale2 = sum_rows(&self.workers, mass.len(), |i| {
+        let [scale2, total] = self.workers.sums(mass.len(), |i| {
             let d = sub(&self.prediction[i].velocity, &frame);
-            mass[i] * mass[i] * (dot(&d, &d) + fall * fall)
+            [mass[i] * mass[i] * (dot(&d, &d) + fall * fall), mass[i]]
         });
         // The floor is the rounding of velocities that are all the same.
-        self.numerics.solver_tolerance * scale2.sqrt()
-            + 1e-15 * self.numerics.sound_speed * mass.iter().fold(0.0, |s, m| s + m)
+        self.numerics.solver_tolerance * scale2.sqrt() + 1e-15 * self.numerics.sound_speed * total
     }
 
     /// Pieces that touch no wall get back the momentum of v* exactly: the solve keeps it only to its tolerance.

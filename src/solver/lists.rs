@@ -44,24 +44,18 @@ impl<const D: usize> Lists<D> {
         periodic: &Periodic<D>,
         wall_travel: f64,
         has_walls: bool,
+        workers: &Workers,
     ) -> bool {
         let n = grains.len();
         if n == 0 {
             return false;
         }
-        let mut mean = [0.0; D];
-        for i in 0..n {
-            let d = periodic.difference(&grains.position[i], &grains.listed[i]);
-            for k in 0..D {
-                mean[k] += d[k] / n as f64;
-            }
-        }
-        let (mut relative, mut absolute) = (0.0f64, 0.0f64);
-        for i in 0..n {
-            let d = periodic.difference(&grains.position[i], &grains.listed[i]);
-            relative = relative.max(norm(&sub(&d, &mean)));
-            absolute = absolute.max(norm(&d));
-        }
+        let moved = |i: usize| periodic.difference(&grains.position[i], &grains.listed[i]);
+        let mean = workers.sums(n, moved).map(|sum| sum / n as f64);
+        let [relative, absolute] = workers.largest(n, |i| {
+            let d = moved(i);
+            [norm(&sub(&d, &mean)), norm(&d)]
+        });
         2.0 * relative > self.skin || (has_walls && absolute + wall_travel > self.skin)
     }
 

@@ -50,6 +50,7 @@ use crate::material::Material;
 use crate::math::{Arch, Geometry, Quad, Vector, Workers, norm};
 use crate::state::State;
 
+use constitutive::Response;
 use implicit::Viscous;
 use kinematics::Kinematics;
 use lists::Lists;
@@ -175,6 +176,7 @@ pub struct Solver<const D: usize> {
     volume: Vec<f64>,
     /// Empty unless particles are rings.
     rings: Vec<Ring>,
+    responses: Vec<Response>,
     pressure: Vec<f64>,
     /// Pressure, shear rate, density and pair viscosity of each particle, as the pressure sweep looks it up.
     loads: Vec<Quad>,
@@ -246,6 +248,7 @@ impl<const D: usize> Solver<D> {
             kinematics: Vec::new(),
             volume: Vec::new(),
             rings: Vec::new(),
+            responses: Vec::new(),
             pressure: Vec::new(),
             loads: Vec::new(),
             normal_pressure: Vec::new(),
@@ -362,34 +365,32 @@ impl<const D: usize> Solver<D> {
 
     /// v and x to the end of the step (symplectic Euler), and the density's diffusion before lists may reorder rows.
     fn move_grains(&mut self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
+        let (new, prediction) = (&self.viscous.velocity, &self.prediction);
+        let is_bad = |i: usize| !new[i].iter().all(|c| c.is_finite());
+        if let Some(bad) = self.workers.first_bad(new.len(), is_bad) {
+            return Err(self.not_finite(state, "velocity", |n| n != bad));
+        }
         let grains = &mut state.grains;
         self.before.clone_from(&grains.position);
-        for i in 0..grains.len() {
-            let v = self.viscous.velocity[i];
+        let (x, v) = (&mut grains.position, &mut grains.velocity);
+        self.workers.both(x, v, |i, x, v| {
+            *v = new[i];
             for k in 0..D {
-                grains.viscous_acceleration[i][k] = (v[k] - self.prediction[i].velocity[k]) / dt;
-                grains.position[i][k] += dt * v[k];
+                x[k] += dt * v[k];
             }
-            grains.velocity[i] = v;
-            if self.geometry.is_axisymmetric() && grains.position[i][0] < 0.0 {
-                // The same ring, seen from the other side of the axis.
-                grains.position[i][0] *= -1.0;
-                grains.velocity[i][0] *= -1.0;
-                grains.viscous_acceleration[i][0] *= -1.0;
-                for vectors in [&mut grains.wall_traction, &mut grains.wall_slip] {
-                    if let Some(t) = vectors.get_mut(i) {
-                        t[0] *= -1.0;
-                    }
+            []
+        });
+        let (a, rho) = (&mut grains.viscous_acceleration, &mut grains.density);
+        self.workers.both(a, rho, |i, a, rho| {
+            *a = std::array::from_fn(|k| (new[i][k] - prediction[i].velocity[k]) / dt);
+            *rho += dt * prediction[i].diffusion;
+            []
+        });
+        if self.geometry.is_axisymmetric() {
+            for i in 0..grains.len() {
+                if grains.position[i][0] < 0.0 {
+                    grains.mirror(i);
                 }
-                for tensors in [&mut grains.stress, &mut grains.plastic_rate] {
-                    if let Some(t) = tensors.get_mut(i) {
-                        (t[0][1], t[1][0]) = (-t[0][1], -t[1][0]);
-                    }
-                }
-            }
-            grains.density[i] += dt * self.prediction[i].diffusion;
-            if !v.iter().all(|c| c.is_finite()) {
-                return Err(self.not_finite(state, "velocity", |n| n != i));
             }
         }
         Ok(())
@@ -398,22 +399,26 @@ impl<const D: usize> Solver<D> {
     /// Periodic sides, and the check that nothing is lost.
     fn keep_inside(&self, state: &mut State<D>) -> Result<(), SolverError> {
         let grains = &mut state.grains;
-        for i in 0..grains.len() {
-            self.periodic.wrap(&mut grains.position[i]);
+        if self.periodic.length.iter().any(|l| *l > 0.0) {
+            self.workers
+                .each(&mut grains.position, |_, x| self.periodic.wrap(x));
+        }
+        let is_lost = |i: usize| {
             let x = &grains.position[i];
             let inside = (0..D).all(|k| {
                 self.periodic.length[k] > 0.0 || (x[k] >= self.lower[k] && x[k] <= self.upper[k])
             });
-            if !inside && !grains.drained[i] {
-                return Err(SolverError::Lost {
-                    particle: grains.id[i],
-                    time: state.time,
-                    position: three(x),
-                    velocity: three(&grains.velocity[i]),
-                });
-            }
+            !inside && !grains.drained[i]
+        };
+        match self.workers.first_bad(grains.len(), is_lost) {
+            None => Ok(()),
+            Some(i) => Err(SolverError::Lost {
+                particle: grains.id[i],
+                time: state.time,
+                position: three(&grains.position[i]),
+                velocity: three(&grains.velocity[i]),
+            }),
         }
-        Ok(())
     }
 
     fn sweep_kinematics_in_valid_lists(&mut self, state: &mut State<D>, renew: bool) {
@@ -434,6 +439,7 @@ impl<const D: usize> Solver<D> {
                 &self.periodic,
                 travel,
                 !self.walls.is_empty(),
+                &self.workers,
             )
         {
             self.renew_lists(state);

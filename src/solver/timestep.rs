@@ -1,7 +1,5 @@
 //! Bounds of the internal step, one function a bound (docs/theory.md, E13).
 
-use crate::math::maximum;
-
 use super::{Solver, SolverError, StepBound};
 
 impl<const D: usize> Solver<D> {
@@ -13,7 +11,10 @@ impl<const D: usize> Solver<D> {
 
     /// Neighbours and walls move at most 0.2 h against each other in a step.
     fn motion_bound(&self) -> f64 {
-        let v = maximum(self.kinematics.len(), |i| self.kinematics[i].relative_speed);
+        let rows = &self.kinematics;
+        let [v] = self
+            .workers
+            .largest(rows.len(), |i| [rows[i].relative_speed]);
         if v > 0.0 {
             0.2 * self.kernel.h / v
         } else {

@@ -128,6 +128,28 @@ impl<const D: usize> Grains<D> {
         for_each_field!(self, pick, order);
     }
 
+    /// Turns ring i into the same ring seen from the other side of the axis: r changes its sign.
+    pub fn mirror(&mut self, i: usize) {
+        let vectors = [
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.viscous_acceleration,
+            &mut self.wall_traction,
+            &mut self.wall_slip,
+        ];
+        for vectors in vectors {
+            // Fields of an option that is off are empty.
+            if let Some(v) = vectors.get_mut(i) {
+                v[0] *= -1.0;
+            }
+        }
+        for tensors in [&mut self.stress, &mut self.plastic_rate] {
+            if let Some(t) = tensors.get_mut(i) {
+                (t[0][1], t[1][0]) = (-t[0][1], -t[1][0]);
+            }
+        }
+    }
+
     /// Whether all arrays have the same length and every number that must be is finite and positive.
     #[must_use]
     pub fn is_consistent(&self) -> bool {

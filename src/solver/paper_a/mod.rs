@@ -147,7 +147,7 @@ impl<const D: usize> Solver<D> {
         let walled = !self.walls.is_empty();
         if self
             .lists
-            .outdated(&state.grains, &self.periodic, 0.0, walled)
+            .outdated(&state.grains, &self.periodic, 0.0, walled, &self.workers)
         {
             self.renew_lists(state);
         }
