@@ -1,7 +1,7 @@
 //! The safe half of FMI: from the table of variables to an archive that any FMI importer can load.
 //!
 //! `description` writes modelDescription.xml, `slot` puts the scene into a copy of the shared library, `pack` makes the
-//! archive, `library` finds (or builds) that shared library. The C interface itself is the package in `fmu/`; no
+//! archive with its icon and `terminals`, `library` finds (or builds) that shared library. The C interface itself is the package in `fmu/`; no
 //! function pointer and no C type is known here.
 
 mod description;
@@ -10,6 +10,7 @@ pub mod library;
 mod pack;
 mod page;
 pub mod slot;
+mod terminals;
 mod unit;
 mod v2;
 mod v3;

@@ -8,7 +8,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::slot::{self, SlotError};
-use super::{Error, FmiVersion, description, identifier, page::page};
+use super::{Error, FmiVersion, description, identifier, page::page, terminals};
 use crate::component::Component;
 use crate::scene::Scene;
 
@@ -31,7 +31,7 @@ pub fn pack(scene: &Scene, version: FmiVersion, library: &Path, out: &Path) -> R
         FmiVersion::V2 => "linux64",
         FmiVersion::V3 => "x86_64-linux",
     };
-    let entries = [
+    let mut entries = vec![
         (
             "modelDescription.xml".to_owned(),
             description(&component, version).into_bytes(),
@@ -54,6 +54,20 @@ pub fn pack(scene: &Scene, version: FmiVersion, library: &Path, out: &Path) -> R
             format!("{}\n", env!("CARGO_PKG_LICENSE")).into_bytes(),
         ),
     ];
+    let mut add = |name: &str, bytes: &[u8]| entries.push((name.to_owned(), bytes.to_vec()));
+    match version {
+        FmiVersion::V2 => add("model.png", terminals::ICON_PNG),
+        FmiVersion::V3 => {
+            let folder = "terminalsAndIcons";
+            let document = terminals::terminals(&component);
+            add(
+                &format!("{folder}/terminalsAndIcons.xml"),
+                document.as_bytes(),
+            );
+            add(&format!("{folder}/icon.png"), terminals::ICON_PNG);
+            add(&format!("{folder}/icon.svg"), terminals::ICON_SVG);
+        }
+    }
     let archive = archive(&entries).map_err(|source| file("write", out, source))?;
     let part = out.with_extension("fmu.part");
     fs::write(&part, archive).map_err(|source| file("write", &part, source))?;

@@ -10,6 +10,7 @@ import sys
 import zipfile
 
 import pytest
+from lxml import etree
 
 sys.path.insert(0, os.path.dirname(__file__))
 
@@ -62,6 +63,27 @@ def test_the_archive_is_plain(version):
         page = archive.read("documentation/index.html").decode()
         assert "gauge.surface.depth[1]" in page
         assert b"Apache License" in archive.read("documentation/licenses/license.txt")
+
+
+def test_an_icon_and_a_terminal_for_every_device():
+    with zipfile.ZipFile(FMUS[2]) as archive:
+        assert archive.read("model.png").startswith(b"\x89PNG")
+    with zipfile.ZipFile(FMUS[3]) as archive:
+        assert archive.read("terminalsAndIcons/icon.png").startswith(b"\x89PNG")
+        etree.fromstring(archive.read("terminalsAndIcons/icon.svg"))
+        terminals = etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+    schema = os.path.join(os.path.dirname(fmpy.__file__), "schema", "fmi3", "fmi3TerminalsAndIcons.xsd")
+    etree.XMLSchema(file=schema).assertValid(terminals)
+    description = fmpy.read_model_description(FMUS[3])
+    variables = {v.name: v for v in description.modelVariables}
+    names = [t.get("name") for t in terminals.iter("Terminal")]
+    assert len(set(names)) == len(names)
+    assert {"gate.sluice", "inflow.feed", "gauge.surface"} <= set(names)
+    members = [m.get("variableName") for m in terminals.iter("TerminalMemberVariable")]
+    assert len(set(members)) == len(members)
+    assert set(members) <= set(variables)
+    inputs = {name for name, v in variables.items() if v.causality == "input"}
+    assert inputs and inputs <= set(members)
 
 
 def test_fmi_3_arrays_and_their_elements_agree():
