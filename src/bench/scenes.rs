@@ -337,7 +337,10 @@ pub fn threads(
     watch: &mut dyn FnMut(f64),
 ) -> Result<Threads, Error> {
     let name = format!("{particles} particles");
-    let scene = template(COLUMN, &name)?.with("numerics.spacing", spacing(particles));
+    // Gauges are read in the calling thread, once a communication step: here that would be once a few internal steps.
+    let scene = template(COLUMN, &name)?
+        .with("numerics.spacing", spacing(particles))
+        .without("gauges");
     let mut runner = Runner::new(&name, &scene)?;
     let numerics = &runner.component.scene().numerics;
     let bound =

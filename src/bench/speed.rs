@@ -69,7 +69,7 @@ const FULL: Plan = Plan {
     rest: 20.0,
     paper_a: 1.0,
     sizes: (&[1.0, 2.0, 4.0], 0.05),
-    threads: &[(20e3, (60, 20), 9), (100e3, (20, 8), 7)],
+    threads: &[(20e3, (60, 6), 15), (100e3, (20, 3), 7)],
 };
 
 const QUICK: Plan = Plan {
@@ -120,7 +120,7 @@ pub fn run(choices: &Choices, watch: &mut dyn FnMut(Progress)) -> Result<SpeedRu
     parts.extend(plan.space.iter().map(|count| 5.0 * size(count)));
     let (simulated, repeats) = plan.column;
     parts.push(20.0 * simulated * repeats as f64);
-    parts.push(6.0 * plan.rest);
+    parts.push(1.5 * plan.rest);
     parts.push(choices.paper_a_budget.min(1000.0 * plan.paper_a));
     parts.push(
         plan.sizes
@@ -130,7 +130,7 @@ pub fn run(choices: &Choices, watch: &mut dyn FnMut(Progress)) -> Result<SpeedRu
             .sum(),
     );
     for (count, (before, steps), rounds) in plan.threads {
-        parts.push(count * 1e-6 * (before + 2 * rounds * steps) as f64);
+        parts.push(count * 4e-6 * (before + 2 * rounds * steps) as f64);
     }
     let mut tally = Tally {
         done: 0.0,
