@@ -1,5 +1,9 @@
 //! docs/performance.md from a stored run: what was asked, what came out, what binds.
 
+mod binds;
+mod runs;
+mod sweeps;
+
 use super::SpeedRun;
 use super::kernels::Kernels;
 use super::scenes::Stretch;
@@ -172,13 +176,13 @@ pub fn demands(run: &SpeedRun) -> Vec<Demand> {
 pub fn text(run: &SpeedRun) -> String {
     let parts = [
         opening(run),
-        kernels(run),
-        roofline(run),
-        column(run),
-        paper_a(run),
-        budget(run),
-        sizes(run),
-        threads(run),
+        sweeps::kernels(run),
+        sweeps::roofline(run),
+        runs::column(run),
+        runs::paper_a(run),
+        binds::budget(run),
+        runs::sizes(run),
+        runs::threads(run),
         how(run),
     ];
     parts.join("\n\n") + "\n"
@@ -228,264 +232,6 @@ fn opening(run: &SpeedRun) -> String {
             .map_or(String::new(), |c| format!(", commit {c}")),
         m.date,
         table(&["measured", "asked", "came out", "verdict"], &rows)
-    )
-}
-
-fn kernels(run: &SpeedRun) -> String {
-    let mut rows = Vec::new();
-    for k in &run.kernels {
-        for pass in &k.passes {
-            let or_none = |v: Option<String>| v.unwrap_or_else(|| "-".to_owned());
-            rows.push(vec![
-                if k.dimension == 2 { "plane" } else { "space" }.to_owned(),
-                k.particles.to_string(),
-                format!("{:.1}", k.neighbours()),
-                pass.name.clone(),
-                format!("{:.1}", pass.ns),
-                format!("{:.0}", k.rate(pass.ns)),
-                or_none(pass.plain_ns.map(|ns| format!("{ns:.0}"))),
-                or_none(pass.times_plain.map(|t| format!("{t:.1}"))),
-            ]);
-        }
-    }
-    let (rounds, worst) = run.kernels.iter().fold((0, 0.0f64), |(rounds, worst), k| {
-        (k.rounds.max(rounds), k.disagreement.max(worst))
-    });
-    format!(
-        "## Sweeps alone\n\nA lattice displaced by up to 0.1 dp, h/dp = 1.6, no walls, one thread; the sides are free, so small \
-         ones have fewer pairs a particle. Pairs are those within the support, counted from both sides. *lists* sorts the \
-         particles and builds neighbour lists (every few steps), *pairs* finds the neighbours within the support and makes \
-         velocity gradients, moments and pair coefficients, *pressure* makes the pressure force, density diffusion and pair \
-         viscosities (each once a step); *stress* and *force* are one product of the viscous solve (once an iteration). \
-         *Plain* is the same sweep as one would write it first, one pair after the other (`src/solver/plain.rs`), in the same \
-         program. Medians of {rounds} rounds; the two forms differ by at most {} of the largest result.\n\n{}",
-        number(worst),
-        table(
-            &[
-                "",
-                "particles",
-                "pairs a particle",
-                "sweep",
-                "ns a particle",
-                "Mpair/s",
-                "plain, ns a particle",
-                "plain / fast"
-            ],
-            &rows
-        )
-    )
-}
-
-fn roofline(run: &SpeedRun) -> String {
-    let mut rows = Vec::new();
-    for k in plane(run) {
-        let Some(r) = &k.roofline else { continue };
-        rows.push(vec![
-            k.particles.to_string(),
-            format!("{:.1}", r.ns),
-            format!("{:.0}", k.rate(r.ns)),
-            format!("{:.0}", k.rate(r.plain_ns)),
-            format!("{:.0}", k.rate(r.cells_ns)),
-            format!("{:.0}", k.rate(pairs_ns(k))),
-            percent(r.reached),
-            format!("{:.1}", r.times_plain),
-            format!("{:.1}", r.times_cells),
-            percent(r.filled),
-        ]);
-    }
-    format!(
-        "## The roofline kernel\n\n`src/bench/roofline.rs`: velocity gradient, density diffusion, a plane stress tensor's \
-         force and Monaghan's viscosity in one pass of 44 operations a pair, four particles side by side in the lanes, their \
-         common neighbours from records of one cache line, neighbours found beforehand, nothing stored for a pair. It uses the \
-         solver's lanes and so, like it, no fused multiply-add. The solver's pair sweep does other work: it also finds the \
-         neighbours within the support among those listed, and stores three numbers a pair that the viscous solve reads in \
-         each iteration. *Plain* are the same sums as one would write them first, over neighbour lists with a skin, or by a search of the nine cells around each particle as codes without lists do. *Filled* is the share of the kernel's lanes that holds a pair within the support.\n\n{}",
-        table(
-            &[
-                "particles",
-                "kernel, ns a particle",
-                "kernel, Mpair/s",
-                "plain, lists, Mpair/s",
-                "plain, cells, Mpair/s",
-                "pair sweep, Mpair/s",
-                "sweep / kernel",
-                "sweep / plain, lists",
-                "sweep / plain, cells",
-                "filled"
-            ],
-            &rows
-        )
-    )
-}
-
-fn stretch_row(s: &Stretch) -> Vec<String> {
-    vec![
-        s.name.clone(),
-        s.particles.to_string(),
-        number(s.simulated),
-        s.steps.to_string(),
-        format!("{:.3}", 1e3 * s.mean_step()),
-        format!("{:.2}", s.iterations_per_step()),
-        number(s.cost()),
-        format!("{:.0}", s.ns_per_particle_step()),
-        s.asleep_from.map_or("-".to_owned(), number),
-    ]
-}
-
-const STRETCH: [&str; 9] = [
-    "",
-    "particles",
-    "simulated [s]",
-    "steps",
-    "mean step [ms]",
-    "iterations a step",
-    "CPU s a simulated s",
-    "ns a particle and step",
-    "asleep from [s]",
-];
-
-fn column(run: &SpeedRun) -> String {
-    let rows: Vec<_> = run.column.iter().map(stretch_row).collect();
-    let rest = run.rest.as_ref().map_or_else(
-        || "It did not fall asleep in the time given.".to_owned(),
-        |r| {
-            format!(
-                "Left alone it falls asleep at {} s. From then on a simulated second in ten communication steps, gauges read, \
-                 costs {} ms; the same pile that is not allowed to sleep costs {} s, with {:.2} iterations a step.",
-                number(r.asleep_from),
-                number(1e3 * r.cpu),
-                number(r.awake_cpu),
-                r.awake_iterations
-            )
-        },
-    );
-    format!(
-        "## The column\n\n`cases/column_collapse.toml`, a = 0.90 at the resolution of [A], communication steps of 10 ms, gauges \
-         read, no log, one thread. The four settings step in turns; of each communication step the median of the repetitions \
-         counts.\n\n{}\n\n{rest}",
-        table(&STRETCH, &rows)
-    )
-}
-
-fn paper_a(run: &SpeedRun) -> String {
-    let both = &run.paper_a;
-    let rows = [&both.paper_a, &both.default].map(stretch_row);
-    let windows: Vec<Vec<String>> = both
-        .windows
-        .iter()
-        .map(|(end, ratio)| vec![number(*end), format!("{ratio:.0}")])
-        .collect();
-    let windows = if windows.is_empty() {
-        String::new()
-    } else {
-        format!(
-            "\n\nIn windows of 20 ms, by their ends:\n\n{}",
-            table(&["to [s]", "`paper_a` / default"], &windows)
-        )
-    };
-    let lanes = run
-        .kernels
-        .first()
-        .and_then(|k| k.pass(Pass::Pairs)?.times_plain);
-    let guess = lanes.map_or(String::new(), |times| {
-        format!(
-            " If lanes gave its sums what they give the default's pair sweep ({times:.1} times), the ratio would be {:.0}: an \
-             estimate, not a measurement.",
-            both.ratio() / times
-        )
-    });
-    format!(
-        "## Against the scheme of the paper\n\n`cases/paper_a/column_3.toml` (h/dp 1.3, explicit viscosity, as printed) beside \
-         the default on `cases/column_collapse.toml`, both from t = 0, in turns of 2 ms. The explicit scheme is far too slow \
-         to run to the end here: it gets a budget of CPU time, and what is compared is the same stretch of simulated time, \
-         from the release on. `paper_a` goes through pairs one by one, without lanes: it is the reference on plain scalar \
-         sweeps, and there is no form of it on the default's kernels.{guess}\n\n{}{windows}",
-        table(&STRETCH, &rows)
-    )
-}
-
-/// What a step of the column is made of, by the sweeps' times at the nearest size.
-fn budget(run: &SpeedRun) -> String {
-    let Some((default, sweeps)) = run.column.get(1).zip(plane(run).min_by_key(|k| {
-        let n = run.column.first().map_or(0, |c| c.particles as usize);
-        k.particles.abs_diff(n)
-    })) else {
-        return String::new();
-    };
-    let whole = default.ns_per_particle_step();
-    let ns = |pass: Pass| sweeps.pass(pass).map_or(f64::NAN, |p| p.ns);
-    let products = 1.0 + default.iterations_per_step();
-    let parts = [
-        ("pair sweep", ns(Pass::Pairs)),
-        ("pressure sweep", ns(Pass::Pressure)),
-        ("stress sweeps", products * ns(Pass::Stress)),
-        ("force sweeps", products * ns(Pass::Force)),
-    ];
-    let known: f64 = parts.iter().map(|p| p.1).sum();
-    let rest = ("all else", whole - known);
-    let rows: Vec<Vec<String>> = parts
-        .into_iter()
-        .chain([rest])
-        .map(|(what, ns)| vec![what.to_owned(), format!("{ns:.0}"), percent(ns / whole)])
-        .collect();
-    format!(
-        "## What binds\n\nA step of the column (exact yield, sleep off) by the sweeps' times at {} particles, {products:.2} \
-         stress and force sweeps a step. All else is walls, the law of friction, the yield's projection, vectors of the \
-         conjugate gradients, lists, gauges.\n\n{}\n\n{}",
-        sweeps.particles,
-        table(&["", "ns a particle and step", "share"], &rows),
-        BINDS
-    )
-}
-
-/// From profiles (`perf record`, `perf stat`) of the program, not from the stored run.
-const BINDS: &str = "";
-
-fn sizes(run: &SpeedRun) -> String {
-    let rows: Vec<_> = run.sizes.iter().map(stretch_row).collect();
-    format!(
-        "## Against resolution\n\nThe column from its release, default settings, one thread.\n\n{}",
-        table(&STRETCH, &rows)
-    )
-}
-
-fn threads(run: &SpeedRun) -> String {
-    let rows: Vec<Vec<String>> = run
-        .threads
-        .iter()
-        .map(|t| {
-            vec![
-                t.one.particles.to_string(),
-                t.one.steps.to_string(),
-                t.warm_up.to_string(),
-                format!("{:.2}", t.one.iterations_per_step()),
-                format!("{:.3}", t.wall[0]),
-                format!("{:.3}", t.wall[1]),
-                format!("{:.2}", t.speed_up()),
-                format!("{:.2}", t.cpu[1] / t.cpu[0]),
-            ]
-        })
-        .collect();
-    let rounds = run.threads.first().map_or(0, |t| t.rounds);
-    format!(
-        "## Two threads\n\nThe column at finer resolution, without gauges: some steps from its release, each round from the same saved state, \
-         one thread and two in turns. Wall time, and the least of up to {rounds} rounds, since others on the machine can only \
-         add to it; this machine has {} cores, so that whatever else runs takes from the second thread. Results have the same \
-         bits.\n\n{}",
-        run.machine.cores,
-        table(
-            &[
-                "particles",
-                "steps",
-                "after steps",
-                "iterations a step",
-                "wall, one thread [s]",
-                "wall, two [s]",
-                "speed-up",
-                "CPU time, two / one"
-            ],
-            &rows
-        )
     )
 }
 

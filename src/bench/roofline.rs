@@ -11,8 +11,12 @@
 //! viscosity P_ij = min(v.x, 0)/((r^2 + 0.01 h^2)(rho_i + rho_j)): 44 operations a pair, one root and one division. The
 //! solver's own pair sweep also finds the neighbours and stores what its viscous solve reads again.
 
+mod cells;
+
 use crate::math::{Arch, Four, LANES, Lanes, Quad, in_lanes};
 use crate::state::CellGrid;
+
+use cells::Cells;
 
 /// 0.01 in the viscosity's denominator [1].
 const SOFTENING: f64 = 0.01;
@@ -42,19 +46,6 @@ pub struct Roofline {
     plain: Vec<Sums>,
 }
 
-/// The same particles sorted by square cells of one support, row after row, for the search without lists.
-#[derive(Debug, Default)]
-struct Cells {
-    bodies: Vec<Body>,
-    /// Which particle of the strips each is.
-    place: Vec<u32>,
-    /// Cell of each.
-    cell: Vec<[usize; 2]>,
-    /// Where the cells of each row begin, and the last ends; an empty cell on either side.
-    starts: Vec<Vec<usize>>,
-    sums: Vec<Sums>,
-}
-
 impl Roofline {
     /// Over particles at `x` [m] with velocities `v` [m/s], spacing dp [m] and smoothing length h [m]; density and stress
     /// are made up of the position. Particles left over from groups of four are left out.
@@ -66,17 +57,15 @@ impl Roofline {
         let grid = CellGrid::build(&places, support, &[None; 2]);
         let (mut near, mut ends) = (Vec::new(), Vec::new());
         for group in bodies.as_chunks::<LANES>().0 {
-            let (low, high) = bounds(group);
-            let centre = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
-            let corner = (0.5 * (high[0] - low[0])).hypot(0.5 * (high[1] - low[1]));
-            let first = near.len();
-            grid.for_each_within(&centre, support + corner, |j, p, _| {
-                let out = |k: usize| (low[k] - p[k]).max(p[k] - high[k]).max(0.0);
-                if out(0).hypot(out(1)) < support {
-                    near.push(j as u32);
-                }
-            });
-            near[first..].sort_unstable();
+            let mut any = Vec::new();
+            for body in group {
+                grid.for_each_within(&[body.0[0], body.0[1]], support, |j, _, _| {
+                    any.push(j as u32);
+                });
+            }
+            any.sort_unstable();
+            any.dedup();
+            near.append(&mut any);
             ends.push(near.len());
         }
         let (mut listed, mut listed_ends) = (Vec::new(), Vec::new());
@@ -207,21 +196,7 @@ impl Roofline {
     /// The same sums by a plain scalar search of the nine cells around each particle, without lists: how codes that keep no
     /// lists go through pairs.
     pub fn run_cells(&mut self) {
-        let Cells {
-            bodies,
-            cell,
-            starts,
-            sums,
-            ..
-        } = &mut self.cells;
-        for ((a, [row, column]), out) in bodies.iter().zip(&*cell).zip(sums) {
-            *out = [0.0; 7];
-            for starts in &starts[row - 1..=row + 1] {
-                for b in &bodies[starts[column - 1]..starts[column + 2]] {
-                    add_pair(self.h, a, b, out);
-                }
-            }
-        }
+        self.cells.run(self.h);
     }
 
     /// Largest difference between the forms over the largest sum, for the worst of the seven sums [1].
@@ -230,10 +205,7 @@ impl Roofline {
         self.run();
         self.run_plain();
         self.run_cells();
-        let mut celled = self.plain.clone();
-        for (i, sums) in self.cells.place.iter().zip(&self.cells.sums) {
-            celled[*i as usize] = *sums;
-        }
+        let celled = self.cells.in_strips();
         let mut worst = 0.0f64;
         for k in 0..7 {
             let (mut apart, mut largest) = (0.0f64, f64::MIN_POSITIVE);
@@ -253,29 +225,6 @@ impl Roofline {
             worst = worst.max(apart / largest);
         }
         worst
-    }
-}
-
-impl Cells {
-    fn new(strips: &[Body], edge: f64) -> Self {
-        let (low, high) = bounds(strips);
-        // Rows and columns from 1: nobody is at the rim.
-        let at = |b: &Body| [1, 0].map(|k| 1 + ((b.0[k] - low[k]) / edge).floor() as usize);
-        let [rows, columns] =
-            [1, 0].map(|k| 3 + ((high[k] - low[k]).max(0.0) / edge).floor() as usize);
-        let mut place: Vec<u32> = (0..strips.len() as u32).collect();
-        place.sort_by_key(|i| at(&strips[*i as usize]));
-        let bodies: Vec<Body> = place.iter().map(|i| strips[*i as usize]).collect();
-        let cell: Vec<[usize; 2]> = bodies.iter().map(at).collect();
-        let start = |row: usize, column: usize| cell.partition_point(|c| *c < [row, column]);
-        let starts = |row: usize| (0..=columns).map(|column| start(row, column)).collect();
-        Self {
-            starts: (0..rows).map(starts).collect(),
-            sums: vec![[0.0; 7]; bodies.len()],
-            bodies,
-            place,
-            cell,
-        }
     }
 }
 

@@ -80,3 +80,16 @@ fn what_cannot_be_is_refused() {
     assert_eq!(code, Some(5));
     assert!(error.contains("anew"), "{error}");
 }
+
+#[test]
+fn the_page_in_the_repository_is_that_of_the_run_in_it() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let run = stored(&root.join("benches/runs/speed.json")).unwrap();
+    assert!(!run.quick);
+    let text = std::fs::read_to_string(root.join("docs/performance.md")).unwrap();
+    assert_eq!(
+        text,
+        page::text(&run),
+        "docs/performance.md is stale; run: sandgate bench speed --only-page --page docs/performance.md"
+    );
+}
