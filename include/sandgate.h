@@ -1,7 +1,8 @@
 /*
  * Sandgate: granular flow as a component that you step. Plain C interface (C99, C++17).
  *
- * Link libsandgate_fmu.so (or libsandgate_fmu.a), made by `cargo build --release -p sandgate-fmu`.
+ * Link libsandgate_fmu.so (or libsandgate_fmu.a), made by `cargo build --release -p sandgate-fmu`. docs/c.md is the
+ * manual: every function, its errors, who owns what for how long; examples/c/silo.c and examples/ctypes_silo.py use it.
  *
  * Rules for all functions
  *   Threads    Different instances may be used at the same time from different threads. Calls on one instance must
@@ -108,11 +109,30 @@ typedef struct sandgate_ledger {
     double present;
 } sandgate_ledger;
 
+/* Bits of sandgate_capabilities. */
+typedef enum sandgate_capability {
+    SANDGATE_CAN_GO_BACK = 1,         /* save and restore in every mode, to the bit, also in another process */
+    SANDGATE_CAN_VARY_STEPS = 2,      /* any h, and steps end at t + h exactly */
+    SANDGATE_CAN_RUN_IN_PARALLEL = 4, /* several instances at once, from one thread or several */
+    SANDGATE_CAN_USE_THREADS = 8,     /* sandgate_set_threads, without a change of results */
+    SANDGATE_CAN_LOG = 16             /* sandgate_set_logger */
+} sandgate_capability;
+
+/*
+ * Gets what an instance has to say, during a call on it and from that call's thread. `user` is the pointer given to
+ * sandgate_set_logger. `category` is "logStatusError" for refused and failed calls, or another of the categories that
+ * fmu/README.md lists. Both texts stay until the logger returns. It must return, and must not call the same instance.
+ */
+typedef void (*sandgate_logger)(void *user, const char *category, const char *message);
+
 /* SANDGATE_ABI_VERSION of the library. Compare it with the header's before anything else. */
 uint32_t sandgate_abi_version(void);
 
 /* Version of the program, as "0.1.0". Stays as long as the library is loaded. */
 const char *sandgate_version(void);
+
+/* What the library can do: bits of sandgate_capability. Ask before you rely on one that a later version may add. */
+uint32_t sandgate_capabilities(void);
 
 /*
  * Makes a component from the text of a scene file (UTF-8, ends with a zero byte). `name` is what messages call the
@@ -133,6 +153,12 @@ void sandgate_free(sandgate_instance *instance);
  * instance. Never NULL.
  */
 const char *sandgate_last_error(const sandgate_instance *instance);
+
+/*
+ * From now on `logger` gets messages, with `user` passed through unread. NULL ends it; a new component has none. `user`
+ * must stay usable until then or until sandgate_free. Logging changes no result.
+ */
+int32_t sandgate_set_logger(sandgate_instance *instance, sandgate_logger logger, void *user);
 
 /* Rows of the table of variables; 0 if `instance` is NULL. References are 0 to count - 1. */
 uint32_t sandgate_variable_count(const sandgate_instance *instance);

@@ -7,11 +7,17 @@ use sandgate::scene::{self, Scene, SceneErrors};
 
 use crate::access::check_length;
 use crate::fault::Fault;
-use crate::guard::{CLedger, CStepReport, CVariable, Handle, In, Need, Out, Text, shield};
+use crate::guard::{
+    CLedger, CStepReport, CVariable, Environment, Handle, In, Need, Out, PlainLogger, Text, shield,
+};
 use crate::instance::Instance;
 use crate::log::{Log, Sink, text};
 
 const ABI_VERSION: u32 = 1;
+
+/// `sandgate_capability`: bits of what this library can do. All five are always there; what a build may leave out gets
+/// the next bits.
+const CAPABILITIES: u32 = 0b1_1111;
 
 /// `sandgate_status`: the component's own numbers, and two for what never reaches it.
 fn code(result: Result<(), Fault>) -> i32 {
@@ -32,6 +38,11 @@ pub(crate) extern "C" fn sandgate_abi_version() -> u32 {
 pub(crate) extern "C" fn sandgate_version() -> *const c_char {
     const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
     VERSION.as_ptr().cast()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn sandgate_capabilities() -> u32 {
+    CAPABILITIES
 }
 
 #[unsafe(no_mangle)]
@@ -106,6 +117,22 @@ pub(crate) extern "C" fn sandgate_last_error(instance: Handle) -> *const c_char 
             Ok(i.last_error.as_ptr())
         })
         .unwrap_or(c"the instance is NULL or in use".as_ptr())
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn sandgate_set_logger(
+    instance: Handle,
+    logger: PlainLogger,
+    user: Environment,
+) -> i32 {
+    code(instance.call("sandgate_set_logger", Need::Any, |i| {
+        i.log = if logger.is_given() {
+            Log::new(Sink::Plain(logger, user), true)
+        } else {
+            Log::new(Sink::Nobody, false)
+        };
+        Ok(())
+    }))
 }
 
 #[unsafe(no_mangle)]

@@ -5,7 +5,7 @@ use std::ffi::{CStr, CString};
 use sandgate::fmi::LOG_CATEGORIES;
 
 use crate::fault::{Fault, Status};
-use crate::guard::{Callbacks2, Environment, Logger3};
+use crate::guard::{Callbacks2, Environment, Logger3, PlainLogger};
 
 /// Place in [`LOG_CATEGORIES`].
 #[derive(Clone, Copy)]
@@ -19,8 +19,10 @@ pub(crate) enum Category {
 /// Whom to tell.
 #[derive(Clone)]
 pub(crate) enum Sink {
-    /// The plain C interface: nobody; the text of the last error can be asked for.
+    /// Nobody: the text of the last error can still be asked for through the plain C interface.
     Nobody,
+    /// The plain C interface, once it was given a logger.
+    Plain(PlainLogger, Environment),
     /// FMI 2 with the instance's name.
     Fmi2(Callbacks2, CString),
     /// FMI 3.
@@ -77,6 +79,7 @@ impl Log {
         let name = text(LOG_CATEGORIES[category as usize].0);
         match &self.sink {
             Sink::Nobody => {}
+            Sink::Plain(logger, user) => logger.call(*user, &name, &text(message)),
             // FMI 2 takes the message for a format: without further arguments, only `%` has to be doubled.
             Sink::Fmi2(callbacks, instance) => callbacks.logger.call(
                 callbacks.environment,

@@ -1,6 +1,8 @@
 /*
  * A small client of include/sandgate.h: makes a silo from its scene file, opens the gate, steps, reads gauges, saves,
  * goes on, restores and goes on again. The second way must give the same bits as the first.
+ *
+ *   client SCENE [STEPS]     STEPS before and after saving, 10 unless given
  */
 #include <math.h>
 #include <stdio.h>
@@ -10,6 +12,22 @@
 #include "sandgate.h"
 
 static sandgate_instance *silo;
+
+/* What the logger was told. */
+struct told {
+    int errors, events;
+    char last_error[500];
+};
+
+static void note(void *user, const char *category, const char *message) {
+    struct told *told = user;
+    if (strcmp(category, "logStatusError") == 0) {
+        told->errors += 1;
+        snprintf(told->last_error, sizeof told->last_error, "%s", message);
+    } else {
+        told->events += 1;
+    }
+}
 
 static void check(int32_t status, const char *what) {
     if (status != SANDGATE_OK) {
@@ -52,9 +70,13 @@ int main(int argc, char **argv) {
     uint32_t level, opening, i;
     size_t size = 0, written = 0;
     uint8_t *bytes;
+    struct told told = {0, 0, ""};
+    const uint32_t wanted = SANDGATE_CAN_GO_BACK | SANDGATE_CAN_VARY_STEPS | SANDGATE_CAN_RUN_IN_PARALLEL
+                            | SANDGATE_CAN_USE_THREADS | SANDGATE_CAN_LOG;
+    const int steps = argc == 3 ? atoi(argv[2]) : 10;
 
-    if (argc != 2 || sandgate_abi_version() != SANDGATE_ABI_VERSION) {
-        fprintf(stderr, "usage: client SCENE, with the library that belongs to the header\n");
+    if (argc < 2 || argc > 3 || steps < 1 || sandgate_abi_version() != SANDGATE_ABI_VERSION) {
+        fprintf(stderr, "usage: client SCENE [STEPS], with the library that belongs to the header\n");
         return 2;
     }
     if (sandgate_create("name = 3", "inline", error, sizeof error) != NULL || strstr(error, "inline") == NULL) {
@@ -73,10 +95,15 @@ int main(int argc, char **argv) {
             return 1;
         }
     }
+    if ((sandgate_capabilities() & wanted) != wanted) {
+        fprintf(stderr, "capabilities %u lack some of %u\n", (unsigned)sandgate_capabilities(), (unsigned)wanted);
+        return 1;
+    }
     level = find("gauge.level.depth");
     opening = find("gate.main.opening");
 
     check(sandgate_set_threads(silo, 2), "threads");
+    check(sandgate_set_logger(silo, note, &told), "logger");
     check(sandgate_initialize(silo, 0.0, INFINITY), "initialize");
     if (sandgate_step(silo, 0.5, 0.1, NULL) != SANDGATE_BAD_ARGUMENT || sandgate_last_error(silo)[0] == 0
         || sandgate_set(silo, &opening, 1, &nan_value, 1) != SANDGATE_BAD_ARGUMENT
@@ -87,20 +114,36 @@ int main(int argc, char **argv) {
         return 1;
     }
 
-    t = run(0.0, 10);
+    if (told.errors != 5 || strcmp(told.last_error, sandgate_last_error(silo)) != 0) {
+        fprintf(stderr, "the logger was told of %d refusals, last of: %s\n", told.errors, told.last_error);
+        return 1;
+    }
+    told.events = 0;
+
+    t = run(0.0, steps);
+    if (told.errors != 5 || told.events < steps) {
+        fprintf(stderr, "the logger was told of %d events in %d steps\n", told.events, steps);
+        return 1;
+    }
+    told.events = 0;
+    check(sandgate_set_logger(silo, NULL, NULL), "no logger");
     check(sandgate_save_size(silo, &size), "save size");
     bytes = malloc(size);
     if (bytes == NULL) {
         return 1;
     }
     check(sandgate_save(silo, bytes, size, &written), "save");
-    run(t, 10);
+    run(t, steps);
+    if (told.events != 0) {
+        fprintf(stderr, "the logger is still told\n");
+        return 1;
+    }
     check(sandgate_state_hash(silo, first), "hash");
 
     check(sandgate_reset(silo), "reset");
     check(sandgate_restore(silo, bytes, written), "restore");
     check(sandgate_set_threads(silo, 1), "threads");
-    run(t, 10);
+    run(t, steps);
     check(sandgate_state_hash(silo, second), "hash");
     if (strcmp(first, second) != 0) {
         fprintf(stderr, "restored run differs: %s, %s\n", first, second);

@@ -6,7 +6,7 @@ use super::In;
 use super::border::Plain;
 use crate::fault::Status;
 
-/// `componentEnvironment` or `instanceEnvironment`: handed back to the logger, never looked into.
+/// `componentEnvironment`, `instanceEnvironment` or a `user` pointer: handed back to the logger, never looked into.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
 pub(crate) struct Environment(*mut c_void);
@@ -47,6 +47,29 @@ impl Logger2 {
                     message.as_ptr(),
                 );
             }
+        }
+    }
+}
+
+/// `sandgate_logger` of the plain C interface.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(crate) struct PlainLogger(
+    Option<unsafe extern "C" fn(Environment, *const c_char, *const c_char)>,
+);
+
+impl PlainLogger {
+    /// Whether the caller gave a function.
+    pub(crate) fn is_given(self) -> bool {
+        self.0.is_some()
+    }
+
+    /// Calls it, if so.
+    pub(crate) fn call(self, user: Environment, category: &CStr, message: &CStr) {
+        if let Some(logger) = self.0 {
+            // SAFETY: the caller gave this function for this use; both texts end with a zero byte and outlive the
+            // call.
+            unsafe { logger(user, category.as_ptr(), message.as_ptr()) }
         }
     }
 }

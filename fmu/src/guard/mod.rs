@@ -14,7 +14,7 @@ mod records;
 mod state;
 
 pub(crate) use border::{In, Out, Plain, Text};
-pub(crate) use callback::{Callbacks2, Environment, Logger3, UnusedCallback};
+pub(crate) use callback::{Callbacks2, Environment, Logger3, PlainLogger, UnusedCallback};
 pub(crate) use embedded::embedded_scene;
 #[cfg(test)]
 pub(crate) use embedded::packed;
