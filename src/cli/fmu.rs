@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::{CliError, load_scene, say};
-use crate::fmi::{FmiVersion, library, pack};
+use super::{CliError, load_scene, quantity, say};
+use crate::fmi::{Error, Extent, FmiVersion, Packing, Platform, cross, library, pack_with};
 
 /// What may be typed after `sandgate fmu`.
 #[derive(Debug, clap::Args)]
@@ -16,9 +16,20 @@ pub(super) struct Args {
     /// The file to write [default: <case>.fmu in this folder]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// The shared library to put into it [default: the one beside this program, or built if this is a source tree]
-    #[arg(long, value_name = "FILE")]
-    library: Option<PathBuf>,
+    /// A shared library to put into it, one a platform [default: the one beside this program, or built if this is a
+    /// source tree]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["portable", "platform"])]
+    library: Vec<PathBuf>,
+    /// Build the library for any Linux with glibc 2.17 or later, with cargo-zigbuild (fmu/README.md says how to set it up)
+    #[arg(long)]
+    portable: bool,
+    /// Platforms whose binaries go into the FMU: x86_64-linux, x86_64-windows (with cargo-zigbuild)
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = platform)]
+    platform: Vec<Platform>,
+    /// How far the reference results in the archive go, in simulated time; 0: initial values only [default: what about
+    /// two seconds of computing reach, at least one step]
+    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
+    reference: Option<f64>,
 }
 
 /// Packs the FMU.
@@ -35,8 +46,12 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", scene.name)));
-    let library = library::locate(args.library.as_deref())?;
-    pack(&scene, version, &library, &output)?;
+    let packing = Packing {
+        version,
+        libraries: libraries(args)?,
+        reference: args.reference.map_or(Extent::Short, Extent::Until),
+    };
+    pack_with(&scene, &packing, &output)?;
     let size = std::fs::metadata(&output).map_or(0, |file| file.len());
     say(&format!(
         "{}: FMI {} co-simulation FMU of {}, {:.1} MB",
@@ -45,4 +60,33 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         scene.name,
         size as f64 / 1e6
     ))
+}
+
+/// The shared libraries that were given, found or built.
+fn libraries(args: &Args) -> Result<Vec<PathBuf>, Error> {
+    if !args.library.is_empty() {
+        let given = args.library.iter();
+        return given
+            .map(|path| library::locate(Some(path.as_path())))
+            .collect();
+    }
+    let mut platforms = args.platform.clone();
+    if platforms.is_empty() {
+        platforms.push(Platform::X64Linux);
+    }
+    // One that is named twice is meant once.
+    platforms.sort_by_key(|platform| platform.name());
+    platforms.dedup();
+    let found = platforms.into_iter().map(|platform| match platform {
+        Platform::X64Linux if !args.portable => library::locate(None),
+        _ => cross::portable(platform),
+    });
+    found.collect()
+}
+
+fn platform(name: &str) -> Result<Platform, String> {
+    let all = Platform::ALL;
+    let found = all.into_iter().find(|platform| platform.name() == name);
+    let names = all.map(Platform::name).join(", ");
+    found.ok_or_else(|| format!("found {name}, allowed {names}"))
 }

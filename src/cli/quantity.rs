@@ -15,9 +15,28 @@ pub(super) fn positive_time(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A time span of 0 or more [s].
+///
+/// # Errors
+/// As [`positive_time`].
+pub(super) fn time(text: &str) -> Result<f64, String> {
+    let seconds = parse(text, Quantity::Time).map_err(|error| error.to_string())?;
+    if seconds >= 0.0 {
+        Ok(seconds)
+    } else {
+        Err(format!("found {seconds} s, allowed 0 s or more"))
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::positive_time;
+    use super::{positive_time, time};
+
+    #[test]
+    fn times_may_be_zero() {
+        assert_eq!(time("0"), Ok(0.0));
+        assert!(time("-1 ms").unwrap_err().contains("0 s or more"));
+    }
 
     #[test]
     fn durations_take_units_and_must_be_positive() {

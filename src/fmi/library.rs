@@ -71,7 +71,7 @@ pub fn build(root: &Path, target: &Path) -> Result<PathBuf, Error> {
 }
 
 /// The source tree and target folder a program was built in: ROOT/target/PROFILE/program.
-fn source_tree(program: &Path) -> Option<(PathBuf, PathBuf)> {
+pub(super) fn source_tree(program: &Path) -> Option<(PathBuf, PathBuf)> {
     let target = program
         .ancestors()
         .find(|folder| folder.join("CACHEDIR.TAG").is_file())?;

@@ -1,14 +1,19 @@
 //! The safe half of FMI: from the table of variables to an archive that any FMI importer can load.
 //!
 //! `description` writes modelDescription.xml, `slot` puts the scene into a copy of the shared library, `pack` makes the
-//! archive with its icon and `terminals`, `library` finds (or builds) that shared library. The C interface itself is the package in `fmu/`; no
+//! archive with its icon and `terminals`, its documentation (`page`, `picture`) and what an importer should get
+//! (`reference`); `library` finds (or builds) that shared library, `cross` builds it for other machines. The C interface itself is the package in `fmu/`; no
 //! function pointer and no C type is known here.
 
+pub mod cross;
 mod description;
 mod error;
 pub mod library;
 mod pack;
 mod page;
+mod picture;
+mod platform;
+mod reference;
 pub mod slot;
 mod terminals;
 mod unit;
@@ -18,7 +23,9 @@ mod xml;
 
 pub use description::{description, identifier, token};
 pub use error::Error;
-pub use pack::pack;
+pub use pack::{Packing, pack, pack_with};
+pub use platform::Platform;
+pub use reference::Extent;
 
 /// A version of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,60 +2,95 @@
 
 use std::fs;
 use std::io::{Cursor, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
+use super::reference::{self, Extent, manifest};
 use super::slot::{self, SlotError};
-use super::{Error, FmiVersion, description, identifier, page::page, terminals};
+use super::{Error, FmiVersion, Platform, description, identifier, page::page, terminals};
 use crate::component::Component;
 use crate::scene::Scene;
 
 const LICENSE_APACHE: &str = include_str!("../../LICENSE-APACHE");
 const LICENSE_MIT: &str = include_str!("../../LICENSE-MIT");
+/// Of the crates inside the shared library; tests/it/licenses.rs writes it.
+const THIRD_PARTY: &str = include_str!("licenses/third_party.txt");
 
-/// Writes an FMU of `scene` to `out`, with the scene inside a copy of the shared library at `library`.
+/// What goes into an FMU beside the scene.
+#[derive(Clone, Debug)]
+pub struct Packing {
+    /// Version of the standard.
+    pub version: FmiVersion,
+    /// Shared libraries, one a platform, at least one.
+    pub libraries: Vec<PathBuf>,
+    /// How far the reference results go.
+    pub reference: Extent,
+}
+
+/// Writes an FMU of `scene` to `out`, with the scene inside a copy of the shared library at `library` and short
+/// reference results: [`pack_with`] the defaults.
+///
+/// # Errors
+/// As [`pack_with`].
+pub fn pack(scene: &Scene, version: FmiVersion, library: &Path, out: &Path) -> Result<(), Error> {
+    let packing = Packing {
+        version,
+        libraries: vec![library.to_path_buf()],
+        reference: Extent::Short,
+    };
+    pack_with(scene, &packing, out)
+}
+
+/// Writes an FMU of `scene` to `out`, with the scene inside a copy of each shared library.
 ///
 /// Same inputs, same bytes: time stamps are fixed, entries are deflated, names have forward slashes. The file appears
 /// under its name only when it is complete.
 ///
 /// # Errors
-/// [`Error`]: the scene cannot be built or is too long, the library is missing or of another kind, a file cannot be
-/// read or written.
-pub fn pack(scene: &Scene, version: FmiVersion, library: &Path, out: &Path) -> Result<(), Error> {
+/// [`Error`]: the scene cannot be built, stepped or is too long, a library is missing or of another kind, two are for
+/// the same platform, a file cannot be read or written.
+pub fn pack_with(scene: &Scene, packing: &Packing, out: &Path) -> Result<(), Error> {
+    let binaries = binaries(scene, packing)?;
     let component = Component::new(scene)?;
-    let binary = with_scene(library, scene)?;
+    let reference = reference::reference(scene, packing.reference)?;
     let id = identifier(scene);
-    let folder = match version {
-        FmiVersion::V2 => "linux64",
-        FmiVersion::V3 => "x86_64-linux",
-    };
-    let mut entries = vec![
-        (
-            "modelDescription.xml".to_owned(),
-            description(&component, version).into_bytes(),
-        ),
-        (format!("binaries/{folder}/{id}.so"), binary),
-        (
-            "resources/scene.toml".to_owned(),
-            scene.source.clone().into_bytes(),
-        ),
-        (
-            "documentation/index.html".to_owned(),
-            page(&component).into_bytes(),
-        ),
-        (
-            "documentation/licenses/license.txt".to_owned(),
-            licenses().into_bytes(),
-        ),
-        (
-            "documentation/licenses/license.spdx".to_owned(),
-            format!("{}\n", env!("CARGO_PKG_LICENSE")).into_bytes(),
-        ),
-    ];
+    let mut entries = Vec::new();
     let mut add = |name: &str, bytes: &[u8]| entries.push((name.to_owned(), bytes.to_vec()));
-    match version {
+    add(
+        "modelDescription.xml",
+        description(&component, packing.version).as_bytes(),
+    );
+    for (name, bytes) in &binaries {
+        add(name, bytes);
+    }
+    add("resources/scene.toml", scene.source.as_bytes());
+    add(
+        "documentation/index.html",
+        page(&component, packing.version, &reference).as_bytes(),
+    );
+    let licenses_at = "documentation/licenses";
+    add(&format!("{licenses_at}/license.txt"), licenses().as_bytes());
+    add(
+        &format!("{licenses_at}/license.spdx"),
+        concat!(env!("CARGO_PKG_LICENSE"), "\n").as_bytes(),
+    );
+    add(
+        &format!("{licenses_at}/third_party.txt"),
+        THIRD_PARTY.as_bytes(),
+    );
+    let extra = reference::FOLDER;
+    add(
+        &format!("{extra}/fmi-ls-manifest.xml"),
+        manifest(&id, &reference).as_bytes(),
+    );
+    add(&format!("{extra}/{id}_in.csv"), reference.inputs.as_bytes());
+    add(
+        &format!("{extra}/{id}_out.csv"),
+        reference.outputs.as_bytes(),
+    );
+    match packing.version {
         FmiVersion::V2 => add("model.png", terminals::ICON_PNG),
         FmiVersion::V3 => {
             let folder = "terminalsAndIcons";
@@ -74,21 +109,43 @@ pub fn pack(scene: &Scene, version: FmiVersion, library: &Path, out: &Path) -> R
     fs::rename(&part, out).map_err(|source| file("write", out, source))
 }
 
-/// The library's bytes with the scene in its slot.
-fn with_scene(library: &Path, scene: &Scene) -> Result<Vec<u8>, Error> {
+/// Names in the archive and bytes of the libraries, each with the scene in its slot.
+fn binaries(scene: &Scene, packing: &Packing) -> Result<Vec<(String, Vec<u8>)>, Error> {
+    let id = identifier(scene);
+    let mut binaries: Vec<(String, Vec<u8>)> = Vec::new();
+    for library in &packing.libraries {
+        let (platform, bytes) = with_scene(library, scene)?;
+        let folder = platform.folder(packing.version);
+        let name = format!("binaries/{folder}/{id}.{}", platform.ending());
+        if binaries.iter().any(|(other, _)| *other == name) {
+            return Err(Error::WrongLibrary {
+                path: library.clone(),
+                found: format!("a second library for {}, one is allowed", platform.name()),
+            });
+        }
+        binaries.push((name, bytes));
+    }
+    if binaries.is_empty() {
+        return Err(Error::Library(
+            "found no shared library to pack, at least one is needed".to_owned(),
+        ));
+    }
+    Ok(binaries)
+}
+
+/// The library's platform and its bytes with the scene in its slot.
+fn with_scene(library: &Path, scene: &Scene) -> Result<(Platform, Vec<u8>), Error> {
     let wrong = |found: String| Error::WrongLibrary {
         path: library.to_path_buf(),
         found,
     };
     let mut bytes = fs::read(library).map_err(|source| file("read", library, source))?;
-    // ELF, 64 bits, little-endian, machine 62 (x86-64): the only platform whose folder names `pack` knows.
-    if !bytes.starts_with(b"\x7fELF\x02\x01") || bytes.get(18..20) != Some(&[62, 0]) {
-        return Err(wrong(
-            "it is no shared library for Linux on x86-64".to_owned(),
-        ));
-    }
+    let Some(platform) = Platform::of(&bytes) else {
+        let known = Platform::ALL.map(Platform::name).join(" or ");
+        return Err(wrong(format!("it is no shared library for {known}")));
+    };
     match slot::fill(&mut bytes, &scene.source) {
-        Ok(()) => Ok(bytes),
+        Ok(()) => Ok((platform, bytes)),
         Err(SlotError::TooLong(found)) => Err(Error::SceneTooLong {
             found,
             allowed: slot::CAPACITY,

@@ -1,14 +1,17 @@
-//! documentation/index.html of an FMU: what it simulates, its variables, how to use it.
+//! documentation/index.html of an FMU: what it simulates, a picture, its variables, how to use and how to connect it.
 
 use std::fmt::Write;
 
-use super::description::causality;
+use super::FmiVersion;
+use super::description::{causality, identifier};
+use super::picture::{COLOURS, LEGEND, picture};
+use super::reference::Reference;
 use super::xml::{escape, number};
 use crate::component::{Component, Start, Variable};
 
 const STYLE: &str = "body{font-family:sans-serif;max-width:70em;margin:2em auto;padding:0 1em;line-height:1.4}\
 table{border-collapse:collapse}td,th{border:1px solid #bbb;padding:.2em .5em;text-align:left;vertical-align:top}\
-th{background:#eee}code{white-space:nowrap}";
+th{background:#eee}code{white-space:nowrap}svg{max-width:100%;height:auto}";
 
 const USE: &str = "<h2>How to use it</h2>
 <ul>
@@ -28,20 +31,93 @@ at; changing it changes nothing. Pack a new FMU with <code>sandgate fmu CASE --f
 </ul>
 ";
 
+/// The same component without FMI; `BASE` is the base of its Zenoh keys.
+const CONNECT: &str = "<h2>The same component over Zenoh, and MCAP logs</h2>
+<p>This FMU, the program <code>sandgate</code> and its Zenoh service run the same component: the same scene, inputs and
+steps give the same bits. Take <code>resources/scene.toml</code> out of this archive (an FMU is a zip file), then:</p>
+<ul>
+<li><b>Zenoh</b>: <code>sandgate serve scene.toml</code> prints the address it listens at. It publishes output
+<code>KIND.NAME.WHAT</code> on <code>BASE/out/KIND/NAME.WHAT</code> after each step, takes inputs on
+<code>BASE/in/VARIABLE</code> and answers requests (step, save, restore, ...) on <code>BASE/@rpc/VERB</code>. A state that
+this FMU serialises can be restored there, and the other way round. Keys, messages and requests: docs/zenoh.md of
+Sandgate.</li>
+<li><b>MCAP</b>: <code>sandgate run scene.toml</code> writes <code>run.mcap</code> with gauges, inputs, device poses and
+particles, for Foxglove, Rerun or any MCAP reader. What is in it: docs/logs.md of Sandgate.</li>
+</ul>
+";
+
 /// The page.
-pub(super) fn page(component: &Component) -> String {
+pub(super) fn page(component: &Component, version: FmiVersion, reference: &Reference) -> String {
     let scene = component.scene();
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{name}</title>\n\
          <style>{STYLE}</style></head><body>\n<h1>{name}</h1>\n<p>{title}</p>\n\
-         <p>Granular flow (SPH) by Sandgate {version}. Communication step {step} s, end at {until} s.</p>\n{USE}\
-         <h2>Variables</h2>\n<table>\n<tr><th>Reference</th><th>Name</th><th>Causality</th><th>Unit</th>\
-         <th>Start</th><th>Allowed</th><th>What it is</th></tr>\n",
+         <p>Granular flow (SPH) by Sandgate {sandgate}, FMI {fmi}. Communication step {step} s, end at {until} s.</p>\n",
         name = escape(&scene.name),
         title = escape(&scene.title),
-        version = env!("CARGO_PKG_VERSION"),
+        sandgate = env!("CARGO_PKG_VERSION"),
+        fmi = version.name(),
         step = number(scene.run.step),
         until = number(scene.run.until),
+    );
+    figure(&mut html, component);
+    html.push_str(USE);
+    let base = format!("sandgate/v1/{}", escape(&scene.name));
+    html.push_str(&CONNECT.replace("BASE", &base));
+    results(&mut html, component, reference);
+    table(&mut html, component);
+    html.push_str("<h2>Scene</h2>\n<pre>");
+    for line in scene.source.lines() {
+        html.push_str(&escape(line));
+        html.push('\n');
+    }
+    html.push_str(
+        "</pre>\n<h2>Licences</h2>\n<p>Sandgate: <a href=\"licenses/license.txt\">Apache-2.0 or MIT</a>. \
+         Libraries inside the binary: <a href=\"licenses/third_party.txt\">their licences</a>.</p>\n</body></html>\n",
+    );
+    html
+}
+
+/// The picture and what its colours mean.
+fn figure(html: &mut String, component: &Component) {
+    html.push_str("<figure>\n");
+    html.push_str(&picture(component));
+    html.push_str("<figcaption>The scene before its first step; rest the pointer on a part to see what it is.");
+    let materials = component.scene().materials.iter().enumerate();
+    let materials =
+        materials.map(|(k, m)| (format!("material {}", m.name), COLOURS[k % COLOURS.len()]));
+    let devices = LEGEND
+        .iter()
+        .map(|(what, colour)| ((*what).to_owned(), *colour));
+    for (what, colour) in materials.chain(devices) {
+        // Writing to a String cannot fail.
+        let _ = write!(
+            html,
+            " <span style=\"white-space:nowrap\"><span style=\"color:{colour}\">&#9632;</span> {}</span>",
+            escape(&what)
+        );
+    }
+    html.push_str("</figcaption>\n</figure>\n");
+}
+
+/// Where the reference results are and how to compare with them.
+fn results(html: &mut String, component: &Component, reference: &Reference) {
+    let id = identifier(component.scene());
+    let folder = super::reference::FOLDER;
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        html,
+        "<h2>Reference results</h2>\n<p><code>{folder}/{id}_out.csv</code> has every output at each communication point \
+         up to t = {} s, with the inputs of <code>{id}_in.csv</code> set at the points and held over the steps. Sandgate \
+         computed them when it packed this FMU; on x86-64 an importer gets the same bits.</p>",
+        number(reference.until)
+    );
+}
+
+fn table(html: &mut String, component: &Component) {
+    html.push_str(
+        "<h2>Variables</h2>\n<table>\n<tr><th>Reference</th><th>Name</th><th>Causality</th><th>Unit</th>\
+         <th>Start</th><th>Allowed</th><th>What it is</th></tr>\n",
     );
     for row in component.variables().rows() {
         // Writing to a String cannot fail.
@@ -60,13 +136,7 @@ pub(super) fn page(component: &Component) -> String {
             escape(&row.description),
         );
     }
-    html.push_str("</table>\n<h2>Scene</h2>\n<pre>");
-    for line in scene.source.lines() {
-        html.push_str(&escape(line));
-        html.push('\n');
-    }
-    html.push_str("</pre>\n</body></html>\n");
-    html
+    html.push_str("</table>\n");
 }
 
 fn extents(row: &Variable) -> String {
@@ -84,5 +154,39 @@ fn start(row: &Variable) -> String {
             values.join(" ")
         }
         Start::Calculated => "calculated".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene;
+
+    #[test]
+    fn the_page_has_a_picture_all_variables_and_the_keys_of_the_bus() {
+        let text = include_str!("../../tests/scenes/devices.toml");
+        let scene = scene::parse("devices.toml", text).expect("it is a scene");
+        let component = Component::new(&scene).expect("it builds");
+        let reference = Reference {
+            inputs: String::new(),
+            outputs: String::new(),
+            until: 0.25,
+        };
+        let page = page(&component, FmiVersion::V3, &reference);
+        assert!(page.contains("<svg") && page.contains("t = 0.25 s"));
+        for row in component.variables().rows() {
+            assert!(page.contains(&format!("<code>{}</code>", row.name)));
+        }
+        #[cfg(feature = "record")]
+        {
+            use crate::wire::keys;
+            let base = keys::base(keys::ROOT, &scene.name).expect("it is a name");
+            for key in [
+                keys::output(&base, "KIND.NAME.WHAT"),
+                keys::input(&base, "VARIABLE"),
+            ] {
+                assert!(page.contains(&key), "{key}");
+            }
+        }
     }
 }

@@ -6,8 +6,24 @@ use super::description::{
     variable_head, variable_value, write_experiment, write_log_categories, write_units,
 };
 use super::xml::{Attributes, Xml};
-use crate::component::{ValueKind, Variable, VariableTable};
+use crate::component::{Causality, ValueKind, Variable, VariableTable};
 use crate::scene::Scene;
+
+/// As [`variable_head`], but time is a local variable: FMI Library up to 2.x (libcosim, FMU Compliance Checker) takes
+/// `independent` for an error unless it has the start value that the standard forbids, and FMI 2 can do without.
+fn head_of_scalar(row: &Variable) -> Attributes {
+    if row.causality != Causality::Independent {
+        return variable_head(row);
+    }
+    vec![
+        ("name", row.name.clone()),
+        ("valueReference", row.reference.to_string()),
+        ("description", row.description.clone()),
+        ("causality", "local".to_owned()),
+        ("variability", "continuous".to_owned()),
+        ("initial", "calculated".to_owned()),
+    ]
+}
 
 pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: &str) {
     // FMI 2 has no arrays: their elements are rows of their own.
@@ -31,7 +47,7 @@ pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: 
     write_experiment(xml, scene);
     xml.begin("ModelVariables", &vec![]);
     for row in &rows {
-        xml.begin("ScalarVariable", &variable_head(row));
+        xml.begin("ScalarVariable", &head_of_scalar(row));
         let element = match row.kind {
             ValueKind::Real => "Real",
             ValueKind::Integer if enumeration(row).is_some() => "Enumeration",

@@ -15,9 +15,12 @@ mod cli;
 mod component;
 mod contract;
 #[cfg(feature = "cli")]
+mod cross;
+#[cfg(feature = "cli")]
 mod fmu;
 mod gauges;
 mod json_schema;
+mod licenses;
 mod physics;
 mod python;
 #[cfg(all(feature = "record", feature = "cli"))]

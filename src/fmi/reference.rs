@@ -1,0 +1,211 @@
+//! `extra/org.fmi-standard.fmi-ls-ref`: what an importer should get, after FMI-LS-REF 1.0.0-alpha.1 of the Modelica
+//! Association: a manifest, the inputs and the outputs of the default experiment's first part.
+//!
+//! Inputs are the scene's schedules, set at each communication point and held over the step. How far the results go is
+//! counted in work, not in time, so that the same scene gives the same bytes on every machine.
+
+use super::xml::{Xml, number};
+use crate::component::{Causality, Component, Error, Variable, next_point};
+use crate::scene::Scene;
+
+/// Folder of the layered standard in an archive.
+pub(super) const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
+
+/// How far the reference results of an FMU go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extent {
+    /// As many communication steps as cost about two seconds of CPU time, one at least.
+    Short,
+    /// To this time [s]: the first communication point there or later, at most the scene's end. 0: initial values only.
+    Until(f64),
+}
+
+/// Work of [`Extent::Short`]: particles times sweeps over their pairs. An internal step counts for
+/// [`SWEEPS`] sweeps, an iteration of its viscous solve for one.
+const WORK: f64 = 5.0e6;
+/// Sweeps of an internal step beside its viscous solve.
+const SWEEPS: f64 = 6.0;
+
+/// Inputs and outputs of the reference run.
+pub(super) struct Reference {
+    /// `time` and all inputs, one row a communication point: what is set there.
+    pub(super) inputs: String,
+    /// `time` and all scalar outputs, one row a communication point.
+    pub(super) outputs: String,
+    /// Time of the last row [s].
+    pub(super) until: f64,
+}
+
+/// Runs a scene along its schedules.
+///
+/// # Errors
+/// Those of the component.
+pub(super) fn reference(scene: &Scene, extent: Extent) -> Result<Reference, Error> {
+    let mut component = Component::new(scene)?;
+    component.set_threads(0);
+    component.initialize(0.0, None)?;
+    let mut inputs = Table::of(&component, Causality::Input);
+    let mut outputs = Table::of(&component, Causality::Output);
+    let until = match extent {
+        Extent::Short => scene.run.until,
+        Extent::Until(until) => until.min(scene.run.until),
+    };
+    let mut work = 0.0;
+    loop {
+        let time = component.time();
+        let (references, values) = component.scheduled(time);
+        component.set(&references, &values)?;
+        inputs.sample(&component)?;
+        outputs.sample(&component)?;
+        if time >= until || (extent == Extent::Short && work >= WORK) {
+            break;
+        }
+        let Some(next) = next_point(time, scene.run.step, scene.run.until) else {
+            break;
+        };
+        let report = component.do_step(time, next - time)?;
+        let sweeps = SWEEPS * f64::from(report.substeps) + f64::from(report.iterations);
+        work += sweeps * component.statistics().particles as f64;
+    }
+    Ok(Reference {
+        inputs: inputs.text,
+        outputs: outputs.text,
+        until: component.time(),
+    })
+}
+
+/// Comma-separated values as importers read them: names in quotes, numbers that read back to the same bits.
+struct Table {
+    references: Vec<u32>,
+    text: String,
+}
+
+impl Table {
+    /// Scalars of a causality; arrays are there by their elements, so that both versions of the standard read the same.
+    fn of(component: &Component, causality: Causality) -> Self {
+        let wanted = |row: &&Variable| row.causality == causality && row.shape.is_empty();
+        let rows = component.variables().rows().iter().filter(wanted);
+        let (references, names): (Vec<_>, Vec<_>) = rows
+            .map(|row| (row.reference, format!(",\"{}\"", row.name)))
+            .unzip();
+        Self {
+            references,
+            text: format!("\"time\"{}\n", names.concat()),
+        }
+    }
+
+    fn sample(&mut self, component: &Component) -> Result<(), Error> {
+        let mut values = vec![0.0; self.references.len()];
+        component.get(&self.references, &mut values)?;
+        self.text.push_str(&number(component.time()));
+        for value in values {
+            self.text.push(',');
+            self.text.push_str(&number(value));
+        }
+        self.text.push('\n');
+        Ok(())
+    }
+}
+
+/// fmi-ls-manifest.xml: the files an importer may care for and what they are.
+pub(super) fn manifest(identifier: &str, reference: &Reference) -> String {
+    let mut xml = Xml::document();
+    let text = |pairs: &[(&'static str, &str)]| {
+        pairs
+            .iter()
+            .map(|(key, value)| (*key, (*value).to_owned()))
+            .collect()
+    };
+    xml.begin(
+        "fmiReferences",
+        &text(&[
+            ("xmlns:fmi-ls", "http://fmi-standard.org/fmi-ls-manifest"),
+            ("fmi-ls:fmi-ls-name", "org.fmi-standard.fmi-ls-ref"),
+            ("fmi-ls:fmi-ls-version", "1.0.0-alpha.1"),
+            (
+                "fmi-ls:fmi-ls-description",
+                "Layered Standard providing information on related files included in an FMU.",
+            ),
+        ]),
+    );
+    let results = format!(
+        "Outputs at each communication point of the default experiment up to t = {} s",
+        number(reference.until)
+    );
+    for (kind, source, role, description) in [
+        (
+            "text/csv",
+            format!("{identifier}_in.csv"),
+            "testcase",
+            "Inputs to set at each communication point and to hold over the step",
+        ),
+        (
+            "text/csv",
+            format!("{identifier}_out.csv"),
+            "result",
+            &results,
+        ),
+        (
+            "application/toml",
+            "../../resources/scene.toml".to_owned(),
+            "model",
+            "The scene that this FMU simulates, as Sandgate reads it",
+        ),
+        (
+            "text/html",
+            "../../documentation/index.html".to_owned(),
+            "document",
+            "Variables, picture of the scene, how to use it",
+        ),
+    ] {
+        xml.leaf(
+            "Related",
+            &text(&[
+                ("type", kind),
+                ("source", &source),
+                ("role", role),
+                ("description", description),
+            ]),
+        );
+    }
+    xml.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene;
+
+    fn silo() -> Scene {
+        let text = include_str!("../../tests/scenes/small_silo.toml");
+        scene::parse("small_silo.toml", text).expect("it is a scene")
+    }
+
+    #[test]
+    fn results_end_where_they_are_told_to() {
+        let scene = silo();
+        let run = |extent| reference(&scene, extent).expect("it runs");
+        let start = run(Extent::Until(0.0));
+        assert_eq!((start.until, start.outputs.lines().count()), (0.0, 2));
+        let steps = run(Extent::Until(0.012));
+        assert_eq!(steps.until, 3.0 * 0.005);
+        assert_eq!(steps.inputs.lines().count(), 5);
+        assert!(steps.outputs.starts_with(&start.outputs));
+        let short = run(Extent::Short);
+        assert!(short.until >= scene.run.step && short.until <= scene.run.until);
+        assert_eq!(short.outputs, run(Extent::Short).outputs);
+    }
+
+    #[test]
+    fn inputs_follow_the_schedule() {
+        let scene = silo();
+        let run = reference(&scene, Extent::Until(0.03)).expect("it runs");
+        let rows: Vec<&str> = run.inputs.lines().collect();
+        assert_eq!(rows[0], "\"time\",\"gate.main.opening\"");
+        assert_eq!(rows[1], "0.0,0.0");
+        // At 30 ms the ramp from 20 to 60 ms has done a quarter.
+        let wanted = scene.schedules[0].value_at(0.03);
+        assert!((wanted - 0.25).abs() < 1e-12);
+        assert_eq!(rows[7], format!("0.03,{wanted:?}"));
+    }
+}
