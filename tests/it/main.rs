@@ -17,6 +17,8 @@ mod contract;
 #[cfg(feature = "cli")]
 mod cross;
 #[cfg(feature = "cli")]
+mod drivers;
+#[cfg(feature = "cli")]
 mod fmu;
 mod gauges;
 mod json_schema;

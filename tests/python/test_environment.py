@@ -5,6 +5,11 @@ import importlib
 import pytest
 
 
-@pytest.mark.parametrize("name", ["fmpy", "mcap.reader", "mcap_protobuf.decoder", "zenoh", "rerun", "numpy"])
+NAMES = ["fmpy", "mcap.reader", "mcap_protobuf.decoder", "zenoh", "rerun", "numpy"]
+NAMES += ["libcosimpy", "fmu_manipulation_toolbox", "pythonfmu.builder", "pythonfmu3.builder"]
+NAMES += ["dask.distributed", "pyarrow.parquet"]
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_package_imports(name):
     importlib.import_module(name)
