@@ -46,13 +46,13 @@ def test_a_killed_worker_changes_no_bit_and_costs_a_slice(tmp_path):
         again = sweep.ensemble(client, files, store, on_slice=lambda slices: 1 / 0)
     assert found == serial and again == serial
 
-    # No member went back behind its last saved state, and only slices that the worker had in hand were done twice: the
-    # one it was at, and what it had finished but not handed over.
+    # No member went back behind its last saved state, and none did more than one slice twice: the one that the worker was
+    # at, or had finished but not handed over.
     for number in serial:
         firsts = [start["first"] for start in starts if start["member"] == number]
         assert firsts == sorted(firsts)
         assert set(firsts) <= set(range(0, sweep.STEPS, sweep.SLICE))
-    assert len(starts) - SLICES <= 3, f"{len(starts)} slices were begun, {SLICES} are needed"
+        assert len(firsts) <= sweep.STEPS // sweep.SLICE + 1
 
     sweep.write_parquet(found, tmp_path / "results.parquet")
     table = pyarrow.parquet.read_table(tmp_path / "results.parquet")
