@@ -27,6 +27,8 @@ pub enum Shape {
         radius: f64,
         /// Height along z [m].
         height: f64,
+        /// Only the quarter where x and y are beyond the base's centre.
+        quarter: bool,
     },
 }
 
@@ -51,10 +53,14 @@ impl Shape {
                 base,
                 radius,
                 height,
-            } => (
-                [base[0] - radius, base[1] - radius, base[2]],
-                [base[0] + radius, base[1] + radius, base[2] + height],
-            ),
+                quarter,
+            } => {
+                let back = if *quarter { 0.0 } else { *radius };
+                (
+                    [base[0] - back, base[1] - back, base[2]],
+                    [base[0] + radius, base[1] + radius, base[2] + height],
+                )
+            }
         }
     }
 
@@ -79,9 +85,13 @@ impl Shape {
                 base,
                 radius,
                 height,
+                quarter,
             } => {
                 let (dx, dy) = (x[0] - base[0], x[1] - base[1]);
-                dx * dx + dy * dy <= radius * radius && x[2] >= base[2] && x[2] < base[2] + height
+                (!quarter || (dx >= 0.0 && dy >= 0.0))
+                    && dx * dx + dy * dy <= radius * radius
+                    && x[2] >= base[2]
+                    && x[2] < base[2] + height
             }
         }
     }
@@ -98,6 +108,22 @@ mod tests {
         };
         assert!(t.contains(&[0.6, 0.6, 0.0]));
         assert!(!t.contains(&[1.5, 1.5, 0.0]));
+    }
+
+    #[test]
+    fn four_quarters_make_a_column() {
+        let column = |quarter| Shape::Column {
+            base: [1.0, 2.0, 0.0],
+            radius: 0.5,
+            height: 0.3,
+            quarter,
+        };
+        let count = |quarter| lattice(&column(quarter), None, 0.05, 3).points.len();
+        assert_eq!(4 * count(true), count(false));
+        assert_eq!(column(true).bounds().0, [1.0, 2.0, 0.0]);
+        assert!(
+            !column(true).contains(&[0.9, 2.1, 0.1]) && column(false).contains(&[0.9, 2.1, 0.1])
+        );
     }
 
     #[test]

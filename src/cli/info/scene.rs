@@ -216,8 +216,11 @@ fn contains(shape: &Shape, [x, y, z]: [f64; 3]) -> bool {
             base,
             radius,
             height,
+            quarter,
         } => {
-            (x - base[0]).hypot(y - base[1]) <= *radius && (0.0..=*height).contains(&(z - base[2]))
+            (!quarter || (x >= base[0] && y >= base[1]))
+                && (x - base[0]).hypot(y - base[1]) <= *radius
+                && (0.0..=*height).contains(&(z - base[2]))
         }
     }
 }

@@ -117,6 +117,7 @@ impl Lift<'_> {
             base,
             radius: at.value.radius.as_ref()?.value.0,
             height: at.value.height.as_ref()?.value.0,
+            quarter: at.value.quarter.as_ref().is_some_and(|q| q.value.0),
         })
     }
 
@@ -199,10 +200,12 @@ impl Lift<'_> {
                 base,
                 radius,
                 height,
+                quarter,
             } => Region::Column {
                 base: *base,
                 radius: *radius,
                 height: *height,
+                quarter: *quarter,
             },
         }
     }
@@ -246,10 +249,12 @@ impl Lift<'_> {
                 base,
                 radius,
                 height,
+                quarter,
             } if up[2] > 0.5 => Region::Column {
                 base,
                 radius,
                 height: height.min(level - base[2]),
+                quarter,
             },
             column @ Region::Column { .. } => column,
         })

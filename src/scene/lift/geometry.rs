@@ -19,6 +19,8 @@ pub(super) enum Region {
         base: Point,
         radius: f64,
         height: f64,
+        /// Only where x and y are beyond the base's.
+        quarter: bool,
     },
 }
 
@@ -41,7 +43,11 @@ impl Region {
                 base: [x, y, z],
                 radius: r,
                 height,
-            } => ([x - r, y - r, *z], [x + r, y + r, z + height]),
+                quarter,
+            } => {
+                let back = if *quarter { 0.0 } else { *r };
+                ([x - back, y - back, *z], [x + r, y + r, z + height])
+            }
             Region::Polygon(points) => {
                 let mut lower = [f64::INFINITY, f64::INFINITY, 0.0];
                 let mut upper = [f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0];
@@ -61,8 +67,14 @@ impl Region {
         match self {
             Region::Polygon(points) => signed_area(points).abs(),
             Region::Block { lower, upper } => (0..3).map(|a| upper[a] - lower[a]).product(),
-            Region::Column { radius, height, .. } => {
-                std::f64::consts::PI * radius * radius * height
+            Region::Column {
+                radius,
+                height,
+                quarter,
+                ..
+            } => {
+                let share = if *quarter { 0.25 } else { 1.0 };
+                share * std::f64::consts::PI * radius * radius * height
             }
         }
     }
@@ -78,10 +90,12 @@ impl Region {
                 base,
                 radius,
                 height,
+                quarter,
             } => {
+                let beyond = |k: usize| !quarter || point[k] > base[k] + eps;
                 let away = (point[0] - base[0]).hypot(point[1] - base[1]);
                 let up = point[2] - base[2];
-                away < radius - eps && up > eps && up < height - eps
+                away < radius - eps && up > eps && up < height - eps && beyond(0) && beyond(1)
             }
         }
     }
@@ -275,6 +289,7 @@ mod tests {
             base: [0.0; 3],
             radius: 1.0,
             height: 1.0,
+            quarter: false,
         };
         let block = |x: f64| Region::Block {
             lower: [x, x, 0.0],

@@ -303,6 +303,8 @@ table! {
         required radius: Length, in Range::above(0.0);
         /// Height along z.
         required height: Length, in Range::above(0.0);
+        /// Only the quarter where x and y are beyond the base's centre, to stand in the corner of two free-slip planes.
+        optional quarter: Flag, default false;
     }
 }
 
