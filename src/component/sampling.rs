@@ -169,10 +169,12 @@ fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
             origin,
             direction,
             up,
+            least_depth,
         } => Kind::Field(Field::Front(Front {
             origin: flat(origin),
             direction: flat(direction),
             up: flat(up),
+            least_depth: *least_depth,
         })),
     }
 }

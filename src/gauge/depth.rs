@@ -57,10 +57,10 @@ impl<const D: usize> DepthLine<D> {
         Ok(low)
     }
 
-    /// Whether the depth is at least one spacing, for less than what the depth itself costs.
-    pub(super) fn is_deep(&self, view: &View<D>) -> bool {
+    /// Whether the depth is at least `least` [m], for less than what the depth itself costs.
+    pub(super) fn is_deep(&self, view: &View<D>, least: f64) -> bool {
         self.filled(view)
-            .is_ok_and(|k| self.height(view, k) >= view.spacing)
+            .is_ok_and(|k| self.height(view, k) >= least)
     }
 
     /// Number of the highest place with S >= 0.5, or why there is none.
@@ -254,7 +254,7 @@ mod tests {
                     .find(|&k| line.fill(view, line.height(view, k)) >= 0.5);
                 assert_eq!(line.highest_filled(view), everywhere, "line {k}");
                 let deep = line.depth(view).is_ok_and(|depth| depth >= view.spacing);
-                assert_eq!(line.is_deep(view), deep, "line {k}");
+                assert_eq!(line.is_deep(view, view.spacing), deep, "line {k}");
             });
         }
     }

@@ -1,4 +1,4 @@
-//! Front: the outermost place along a direction with a depth of at least one spacing, and the 99.5 % mass
+//! Front: the outermost place along a direction with a depth of at least so much, and the 99.5 % mass
 //! quantile beside it.
 //!
 //! In space, only the vertical plane through the origin along the direction is looked at: depths are those on it,
@@ -18,12 +18,14 @@ pub struct Front<const D: usize> {
     pub direction: [f64; D],
     /// Unit vector of depth.
     pub up: [f64; D],
+    /// Depth that counts [m]: one spacing unless the scene says otherwise; less cannot be seen.
+    pub least_depth: f64,
 }
 
 impl<const D: usize> Front<D> {
     /// Two values: front [m] and 99.5 % quantile of the mass ahead of the origin [m], both from the origin.
     ///
-    /// Empty: no place ahead of the origin has a depth of one spacing.
+    /// Empty: no place ahead of the origin is as deep as that.
     #[must_use]
     pub fn sample(&self, view: &View<D>) -> Reading {
         if view.is_outside(&self.origin) {
@@ -58,7 +60,7 @@ impl<const D: usize> Front<D> {
         D == 2 || square < radius * radius
     }
 
-    /// Outermost distance with a depth of one spacing, searched from half a spacing beyond the outermost particle.
+    /// Outermost distance with that depth, searched from half a spacing beyond the outermost particle.
     fn front(&self, view: &View<D>, outermost: f64, highest: f64) -> Option<f64> {
         let deep = |s: f64| {
             let foot = along(&self.origin, &self.direction, s);
@@ -67,7 +69,7 @@ impl<const D: usize> Front<D> {
                 up: self.up,
                 length: highest + 2.0 * view.spacing,
             };
-            line.is_deep(view)
+            line.is_deep(view, self.least_depth)
         };
         let step = 0.5 * view.spacing;
         let start = outermost + 2.0 * step;
@@ -115,6 +117,7 @@ mod tests {
             origin: [0.05, 0.0],
             direction: [1.0, 0.0],
             up: [0.0, 1.0],
+            least_depth: block.spacing,
         };
         let reading = block.look(|view| front.sample(view));
         assert_eq!(reading.validity, Validity::Valid);
@@ -135,11 +138,33 @@ mod tests {
             origin: [0.0, 0.0],
             direction: [1.0, 0.0],
             up: [0.0, 1.0],
+            least_depth: block.spacing,
         };
         let reading = block.look(|view| front.sample(view));
         assert!(
             (reading.values[0] - 0.25).abs() < block.spacing,
             "{reading:?}"
+        );
+    }
+
+    /// A wedge 0.1 deep at the origin and 0 at 0.4: the front recedes by what the depth asks for.
+    #[test]
+    fn a_deeper_front_lies_further_back() {
+        let wedge = Bed::<2>::new(1.6, 20, 0.0).keep(|x| x[1] < 0.1 * (1.0 - x[0] / 0.4));
+        let place = |least_depth: f64| {
+            let front = Front {
+                origin: [0.0, 0.0],
+                direction: [1.0, 0.0],
+                up: [0.0, 1.0],
+                least_depth,
+            };
+            wedge.look(|view| front.sample(view)).values[0]
+        };
+        let (thin, deep) = (place(0.03), place(0.06));
+        // Rows of one spacing: places are known to four spacings at this slope.
+        assert!(
+            (thin - deep - 0.12).abs() < 4.0 * wedge.spacing,
+            "{thin} {deep}"
         );
     }
 
@@ -150,6 +175,7 @@ mod tests {
             origin: [0.3, 0.0],
             direction: [1.0, 0.0],
             up: [0.0, 1.0],
+            least_depth: block.spacing,
         };
         assert_eq!(
             block.look(|view| front.sample(view)),

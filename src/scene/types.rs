@@ -312,7 +312,7 @@ pub enum GaugeKind {
         /// The point [m].
         at: Point,
     },
-    /// Outermost position along `direction` with depth of at least one particle spacing, from `origin` [m],
+    /// Outermost position along `direction` with a depth of at least `least_depth`, from `origin` [m],
     /// with the 99.5 % mass quantile beside it.
     Front {
         /// Where distances start; a point of the bed [m].
@@ -321,6 +321,8 @@ pub enum GaugeKind {
         direction: Point,
         /// Unit vector of depth.
         up: Point,
+        /// Depth that counts [m], at least one spacing.
+        least_depth: f64,
     },
 }
 

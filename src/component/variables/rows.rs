@@ -316,7 +316,7 @@ fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
                 "front",
                 "m",
                 0,
-                "outermost distance with a depth of one particle spacing",
+                "outermost distance with a depth of its least_depth, one particle spacing by default,",
             )
             .display(length),
             reading(

@@ -94,11 +94,32 @@ impl Lift<'_> {
             );
             return None;
         }
+        let least_depth = self.least_depth(raw.least_depth.as_ref())?;
         Some(GaugeKind::Front {
             origin: origin?,
             direction,
             up,
+            least_depth,
         })
+    }
+
+    /// As given, or one spacing.
+    fn least_depth(&mut self, given: Option<&At<Length>>) -> Option<f64> {
+        let spacing = self.spacing?;
+        let Some(at) = given else {
+            return Some(spacing);
+        };
+        let depth = at.value.0;
+        if depth < (1.0 - 1e-9) * spacing {
+            self.problems.report(
+                &at.place,
+                format!("{depth} m"),
+                format!("{spacing} m, the spacing, or more"),
+                "leave it out, or make numerics.spacing smaller: less than a row of particles cannot be seen",
+            );
+            return None;
+        }
+        Some(depth)
     }
 
     /// As given, or "up" of the scene.

@@ -501,6 +501,8 @@ table! {
 table! {
     /// Outermost position of material along a direction.
     RawFront {
+        /// Depth that counts as material, at least one spacing; one spacing if left out.
+        optional least_depth: Length, in Range::above(0.0);
         /// Where distances start, on the bed.
         required origin: Coordinates<Length>;
         /// Direction along the bed, of any length.
