@@ -11,7 +11,7 @@ mod silo;
 use super::Study;
 
 /// All studies, in the order in which they are listed and run.
-pub const ALL: [Study; 9] = [
+pub const ALL: [Study; 10] = [
     incline::STUDY,
     columns::STUDY,
     columns::axisymmetric::STUDY,
@@ -20,6 +20,7 @@ pub const ALL: [Study; 9] = [
     rest::STUDY,
     janssen::STUDY,
     silo::STUDY,
+    silo::cohesion::STUDY,
     controls::STUDY,
 ];
 

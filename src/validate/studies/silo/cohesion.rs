@@ -1,0 +1,187 @@
+//! `silo_cohesion`: discharge of a cohesive silo against a published table of friction and cohesion.
+
+use super::{BULK_DENSITY, GRAVITY, SERIES, TEMPLATE, rate};
+use crate::validate::csv;
+use crate::validate::report::number;
+use crate::validate::template::{Template, point, points, rectangle};
+use crate::validate::{Effort, Member, Metric, Recording, Report, Results, Rule, Study, Table};
+
+/// The study.
+pub(in crate::validate::studies) const STUDY: Study = Study {
+    name: "silo_cohesion",
+    title: "Discharge of a silo against friction and cohesion",
+    about: "A planar flat-bottomed silo with an opening of W = 0.1 m, 5 W wide and filled to 5 W, at 16 particles across the \
+opening: mu_s 0.1, 0.3 and 0.5, mu_2 = mu_s + 0.28, I0 0.4 with the bulk density, d = W/30, cohesion Co rho g W with Co from 0 to \
+0.3. Q is the area that leaves per time over sqrt(g) W^1.5, the mean while the fill falls from 95 to 75 % or, where less comes \
+out in 10 sqrt(W/g), over their second half.\n\n\
+Beside it a table of the Basilisk wiki (volume of fluid, incompressible, a box 10 W wide filled to 10 W, 12.8 cells an opening: \
+limited by its grid). Where its Q is above 0.8 ours must be within 10 %; below, flow is about to stop and Q falls steeply \
+with Co: there it must be within a tenth of the Q without cohesion.",
+    members,
+    analyse,
+};
+
+const TABLE: &str = include_str!("../../../../cases/reference/silo_cohesion.csv");
+/// Opening W [m].
+const OPENING: f64 = 0.1;
+/// Fill between which the rate is taken.
+const FILLS: [f64; 2] = [0.95, 0.75];
+
+/// A row of the table: mu_s, Co, Q.
+type Entry = [f64; 3];
+
+fn entries() -> Result<Vec<Entry>, String> {
+    csv::columns(TABLE, ["mu_s", "Co", "Q"])
+}
+
+fn name([friction, cohesion, _]: &Entry) -> String {
+    format!("mu{friction:.1}_co{cohesion:.1}")
+}
+
+/// sqrt(W/g) [s].
+fn scale() -> f64 {
+    (OPENING / GRAVITY).sqrt()
+}
+
+fn member(entry: &Entry, effort: Effort) -> Result<Member, String> {
+    let [friction, cohesion, _] = *entry;
+    let w = OPENING;
+    let spacing = w / effort.pick(16.0, 6.0);
+    let lip = 5.0 * spacing;
+    let (side, edge, bottom, top) = (2.5 * w, 0.5 * w, -3.0 * w, 5.5 * w);
+    let left = [
+        [-side, top],
+        [-side, 0.0],
+        [-edge, 0.0],
+        [-edge - 0.8 * lip, -lip],
+    ];
+    let right = left.map(|[x, y]| [-x, y]);
+    let right = [right[3], right[2], right[1], right[0]];
+    let below = -lip - 2.0 * spacing;
+    let text = Template::new(TEMPLATE)?
+        .with("domain.lower", point(-1.2 * side, bottom))
+        .with("domain.upper", point(1.2 * side, top + w))
+        .with("numerics.spacing", spacing)
+        .with("numerics.expected_speed", (2.0 * GRAVITY * 3.0 * w).sqrt())
+        .with("materials.grains.static_friction_angle", friction.atan())
+        .with(
+            "materials.grains.dynamic_friction_angle",
+            (friction + 0.28).atan(),
+        )
+        .with(
+            "materials.grains.inertial_number_scale",
+            0.40 / 0.6_f64.sqrt(),
+        )
+        .with("materials.grains.grain_diameter", w / 30.0)
+        .with("materials.grains.grain_density", BULK_DENSITY / 0.6)
+        .with(
+            "materials.grains.cohesion",
+            cohesion * BULK_DENSITY * GRAVITY * w,
+        )
+        .with("bodies.fill.box", rectangle([-side, 0.0], [side, 5.0 * w]))
+        .with("walls.left.polyline", points(&left))
+        .with("walls.right.polyline", points(&right))
+        .with("outflows.drain.lower", point(-1.2 * side, bottom))
+        .with("outflows.drain.upper", point(1.2 * side, -2.0 * w))
+        .with("gauges.discharge.from", point(-1.2 * side, below))
+        .with("gauges.discharge.to", point(1.2 * side, below))
+        .with("run.step", scale() / 20.0)
+        .with("run.until", 10.0 * scale())
+        .text()?;
+    Ok(Member::new(name(entry), text, &SERIES, Vec::new()))
+}
+
+fn members(effort: Effort) -> Result<Vec<Member>, String> {
+    entries()?
+        .iter()
+        .map(|entry| member(entry, effort))
+        .collect()
+}
+
+/// Q over sqrt(g) W^1.5.
+fn flow(recording: &Recording) -> Option<f64> {
+    let gone = recording.curve("gauge.discharge.mass");
+    let late = || {
+        let half = gone.get(gone.len() / 2)?;
+        let end = gone.last()?;
+        Some((end.1 - half.1) / (end.0 - half.0))
+    };
+    let rate = rate(recording, FILLS[0], FILLS[1]).or_else(late)?;
+    Some(rate / BULK_DENSITY / (GRAVITY.sqrt() * OPENING.powf(1.5)))
+}
+
+fn analyse(results: &Results) -> Result<Report, String> {
+    let entries = entries()?;
+    let mut report = Report::default();
+    let mut rows = Vec::new();
+    for entry in &entries {
+        let [friction, cohesion, known] = *entry;
+        let found = results.finished(&name(entry)).and_then(flow);
+        let free = entries.iter().find(|e| e[0] == friction && e[1] == 0.0);
+        let free = free.map_or(known, |e| e[2]);
+        let (rule, why) = if known > 0.8 {
+            (
+                Rule::NearShare(known, 0.10),
+                "the table's band is 8 %, its grid is coarse",
+            )
+        } else {
+            (
+                Rule::Near(known, 0.1 * free),
+                "about to stop: a tenth of the flow without cohesion",
+            )
+        };
+        report.metrics.push(Metric::new(
+            format!("mu_s = {friction:.1}, Co = {cohesion:.1}: Q"),
+            found,
+            rule,
+            why,
+        ));
+        rows.push(vec![
+            number(friction),
+            number(cohesion),
+            found.map_or("-".to_owned(), number),
+            number(known),
+        ]);
+    }
+    report.tables.push(Table {
+        title: "Q / (sqrt(g) W^1.5) beside the published table".to_owned(),
+        head: ["mu_s", "Co", "computed", "published, grid-limited"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+    });
+    Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A silo that gives Q = 1.2 throughout, and one that stops half-way to the first fill.
+    #[test]
+    fn the_flow_of_a_known_discharge_is_found() {
+        let unit = BULK_DENSITY * GRAVITY.sqrt() * OPENING.powf(1.5);
+        let whole = 25.0 * OPENING * OPENING * BULK_DENSITY;
+        let recording = |mass: fn(f64) -> f64| {
+            let mut recording = Recording::empty("key".to_owned());
+            recording.time = (0..=200).map(|k| f64::from(k) * 0.05 * scale()).collect();
+            let gone = recording.time.iter().map(|t| vec![mass(*t) * unit]);
+            let gone = gone.collect();
+            recording
+                .series
+                .insert("gauge.discharge.mass".to_owned(), gone);
+            recording
+                .series
+                .insert("mass.initial".to_owned(), vec![vec![whole]; 201]);
+            flow(&recording).unwrap()
+        };
+        assert!((recording(|t| 1.2 * t) - 1.2).abs() < 1e-9);
+        assert!((recording(|t| 0.1 * t.min(0.8)) - late_rate(0.8)).abs() < 1e-9);
+    }
+
+    /// Mean of 0.1 t up to `stop` over the second half of ten units.
+    fn late_rate(stop: f64) -> f64 {
+        let (half, end) = (5.0 * scale(), 10.0 * scale());
+        0.1 * (stop.min(end) - stop.min(half)) / (end - half)
+    }
+}
