@@ -55,20 +55,28 @@ pub fn portable(platform: Platform) -> Result<PathBuf, Error> {
 pub fn build(root: &Path, target: &Path, platform: Platform) -> Result<PathBuf, Error> {
     let (triple, glibc) = platform.triple();
     let target = target.join("cross");
-    let output = Command::new("cargo-zigbuild")
-        .args(["zigbuild", "--release", "-p", "sandgate-fmu", "--target"])
+    let windows = platform == Platform::X64Windows;
+    let mut command = Command::new("cargo-zigbuild");
+    command
+        .arg(if windows { "rustc" } else { "zigbuild" })
+        .args(["--release", "-p", "sandgate-fmu", "--target"])
         .arg(format!("{triple}{glibc}"))
         .arg("--target-dir")
         .arg(&target)
-        .current_dir(root)
-        .output()
-        .map_err(|e| {
-            Error::Library(format!(
-                "building for {} needs cargo-zigbuild, which cannot be started ({e}); install it with `{SET_UP}` \
-                 so that it is on the PATH, or leave out --portable and --platform",
-                platform.name()
-            ))
-        })?;
+        .current_dir(root);
+    if windows {
+        // Without a list that it reads, zig's linker exports every symbol.
+        let exports = root.join("fmu/exports.def");
+        command.args(["--", "-C"]);
+        command.arg(format!("link-arg={}", exports.display()));
+    }
+    let output = command.output().map_err(|e| {
+        Error::Library(format!(
+            "building for {} needs cargo-zigbuild, which cannot be started ({e}); install it with `{SET_UP}` so \
+             that it is on the PATH, or leave out --portable and --platform",
+            platform.name()
+        ))
+    })?;
     let library = target
         .join(triple)
         .join("release")

@@ -102,6 +102,25 @@ fn the_library_exports_what_the_headers_declare_and_nothing_else() {
 }
 
 #[test]
+fn the_list_of_exports_is_not_stale() {
+    let path = root().join("fmu/exports.def");
+    let found = fs::read_to_string(&path).expect("it is there");
+    let (head, _) = found.split_once("EXPORTS\n").expect("it is a list");
+    let mut written = format!("{head}EXPORTS\n");
+    for name in declared() {
+        let _ = writeln!(written, "    {name}");
+    }
+    if std::env::var_os("SANDGATE_REGENERATE").is_some() {
+        fs::write(&path, &written).expect("the source tree is writable");
+    } else {
+        assert_eq!(
+            found, written,
+            "run SANDGATE_REGENERATE=1 cargo test --release --test it exports"
+        );
+    }
+}
+
+#[test]
 fn signatures_are_those_of_the_headers() {
     let mut rust = BTreeMap::new();
     for file in ["fmi2.rs", "fmi3.rs", "capi.rs"] {
