@@ -333,6 +333,10 @@ impl<const D: usize> Solver<D> {
         state.step_size = dt;
         if self.can_sleep {
             self.notice_rest(state, inputs, &impulse, dt);
+            if state.rest.asleep {
+                // Velocities are 0 from here on, and what follows from them is what a restored state gives.
+                self.derive(state);
+            }
         }
         Ok(SubStep {
             dt,
