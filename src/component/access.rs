@@ -5,24 +5,38 @@ use super::lifecycle::{self, Call};
 use super::variables::{Causality, Source, ValueKind, Variability, Variable};
 use super::{Component, Error, ValueReference};
 
+/// Share of its range by which an input may be out of it: what rounding does to a controller's limit.
+const RANGE_SLACK: f64 = 1e-9;
+
 impl Component {
     /// Sets variables, all or none. `values` holds the flat values of all references, one after the other.
     ///
-    /// An input is held from here on; a slope that was given before is dropped.
+    /// An input is held from here on; a slope that was given before is dropped. An input that is out of range by a
+    /// billionth of the range, which rounding may do, is clamped; by more only if `saturate_inputs` is set, and then
+    /// [`Component::take_notes`] tells. Fixed parameters take effect together, at [`Component::settle`].
     ///
     /// # Errors
     /// Unknown reference, wrong length, not finite, out of range, not settable (in this mode): names the variable,
     /// what was found and what is allowed. Nothing is changed then.
     pub fn set(&mut self, references: &[ValueReference], values: &[f64]) -> Result<(), Error> {
         self.check_length("set", references, values.len())?;
+        let mut accepted = Vec::with_capacity(values.len());
+        let mut notes = Vec::new();
         for (row, value) in self.settable("set", references)?.into_iter().zip(values) {
-            check_value(row, *value)?;
+            accepted.push(self.accept(row, *value, &mut notes)?);
         }
-        for (reference, value) in references.iter().zip(values) {
+        self.notes.append(&mut notes);
+        for (reference, value) in references.iter().zip(&accepted) {
             match self.table.source(*reference) {
                 // A new pool of threads costs time: only when the number is another.
                 Some(Source::Threads) if *value as usize == self.threads => {}
                 Some(Source::Threads) => self.set_threads(*value as usize),
+                Some(Source::SaturateInputs) => self.life.saturate_inputs = *value != 0.0,
+                Some(Source::Adjustable(i)) => {
+                    if let Some(place) = self.life.parameters.get_mut(*i) {
+                        *place = *value;
+                    }
+                }
                 Some(source) => {
                     if let Some(ramp) = self.input_mut(*source) {
                         *ramp = Ramp {
@@ -35,6 +49,35 @@ impl Component {
             }
         }
         Ok(())
+    }
+
+    /// Inputs that were clamped to their range since the last call of this, because `saturate_inputs` is set: one
+    /// line each, for logs.
+    pub fn take_notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// The value as it is taken: inputs a little out of range, or with `saturate_inputs` far, are clamped.
+    fn accept(&self, row: &Variable, value: f64, notes: &mut Vec<String>) -> Result<f64, Error> {
+        if row.causality == Causality::Input
+            && value.is_finite()
+            && let Some((least, most)) = row.range
+            && !(least..=most).contains(&value)
+        {
+            let clamped = value.clamp(least, most);
+            if (value - clamped).abs() <= RANGE_SLACK * (most - least) {
+                return Ok(clamped);
+            }
+            if self.life.saturate_inputs {
+                notes.push(format!(
+                    "{}: found {value}, clamped to {clamped}, because saturate_inputs is true",
+                    row.name
+                ));
+                return Ok(clamped);
+            }
+        }
+        check_value(row, value)?;
+        Ok(value)
     }
 
     /// Gives inputs a slope for the next step: value + slope (t - t0), t0 being the start of the step. After the
@@ -72,28 +115,41 @@ impl Component {
     /// # Errors
     /// Unknown reference, wrong length.
     pub fn get(&self, references: &[ValueReference], values: &mut [f64]) -> Result<(), Error> {
+        self.get_as(references, values, self.life.time, &self.life.outputs)
+    }
+
+    /// As [`Component::get`], with these outputs at this time.
+    pub(super) fn get_as(
+        &self,
+        references: &[ValueReference],
+        values: &mut [f64],
+        time: f64,
+        outputs: &[f64],
+    ) -> Result<(), Error> {
         self.check_length("get", references, values.len())?;
         let mut rest = values;
         for row in self.rows("get", references)? {
             // The lengths were checked above.
             let (mine, others) = rest.split_at_mut(row.len());
-            self.read(row, mine);
+            self.read(row, mine, time, outputs);
             rest = others;
         }
         Ok(())
     }
 
     /// The values of one row.
-    fn read(&self, row: &Variable, values: &mut [f64]) {
+    fn read(&self, row: &Variable, values: &mut [f64], time: f64, outputs: &[f64]) {
         let inputs = &self.life.inputs;
         match self.table.source(row.reference) {
-            Some(Source::Time) => values.fill(self.life.time),
+            Some(Source::Time) => values.fill(time),
             Some(Source::Threads) => values.fill(self.threads as f64),
+            Some(Source::SaturateInputs) => values.fill(f64::from(self.life.saturate_inputs)),
+            Some(Source::Adjustable(i)) => values.fill(self.life.parameters[*i]),
             Some(Source::GateOpening(i)) => values.fill(inputs.gate_opening[*i].value),
             Some(Source::InflowRate(i)) => values.fill(inputs.inflow_rate[*i].value),
             _ => {
                 let offset = self.table.offset(row);
-                values.copy_from_slice(&self.life.outputs[offset..offset + values.len()]);
+                values.copy_from_slice(&outputs[offset..offset + values.len()]);
             }
         }
     }
@@ -107,7 +163,7 @@ impl Component {
     }
 
     /// Rows of references.
-    fn rows(
+    pub(super) fn rows(
         &self,
         call: &'static str,
         references: &[ValueReference],
@@ -155,7 +211,7 @@ impl Component {
         Ok(rows)
     }
 
-    fn check_length(
+    pub(super) fn check_length(
         &self,
         call: &'static str,
         references: &[ValueReference],
@@ -203,7 +259,7 @@ fn check_value(row: &Variable, value: f64) -> Result<(), Error> {
     ))
 }
 
-fn bad(call: &'static str, what: &str, found: &str, allowed: &str) -> Error {
+pub(super) fn bad(call: &'static str, what: &str, found: &str, allowed: &str) -> Error {
     Error::BadArgument {
         call,
         what: what.to_owned(),

@@ -1,9 +1,13 @@
 //! One communication step: check, advance the engine to t + h, sample outputs.
 
-use super::engine::Ramp;
+use super::engine::{Advance, Ramp, SolverError};
 use super::lifecycle::{self, Call};
 use super::outputs::{self, FlowMass};
+use super::watch::{Intermediate, Wish};
 use super::{Component, Error, Mode, StepReport};
+
+/// Who looks at the internal steps of a communication step.
+type Watcher<'w> = dyn FnMut(&mut Intermediate<'_>) -> Wish + 'w;
 
 /// Orchestrators add up step sizes, so their time may differ from ours by rounding; more than this share (or this
 /// many seconds below 1 s) is a mistake.
@@ -28,34 +32,95 @@ impl Component {
     /// stop time, an input's slope leads out of its range): nothing happened. [`Error::Solver`]: mode is
     /// [`Mode::Failed`] afterwards, time and outputs are those of the last good step.
     pub fn do_step(&mut self, t: f64, h: f64) -> Result<StepReport, Error> {
+        self.step(t, h, None)
+    }
+
+    /// As [`Component::do_step`], with a look at the component after every internal step, from the calling thread. A
+    /// watcher may set inputs for the rest of the step and end it early: then the report's time is that of the early
+    /// end, which is met exactly. Watching alone changes no bit.
+    ///
+    /// # Errors
+    /// As [`Component::do_step`].
+    pub fn do_step_watched(
+        &mut self,
+        t: f64,
+        h: f64,
+        watcher: &mut Watcher<'_>,
+    ) -> Result<StepReport, Error> {
+        self.step(t, h, Some(watcher))
+    }
+
+    fn step(
+        &mut self,
+        t: f64,
+        h: f64,
+        watcher: Option<&mut Watcher<'_>>,
+    ) -> Result<StepReport, Error> {
         lifecycle::check(Call::DoStep, self.life.mode)?;
-        let end = self.check_step(t, h)?;
+        let wanted = self.check_step(t, h)?;
         let start = self.life.time;
-        self.check_ramps(end - start)?;
+        self.check_ramps(wanted - start)?;
         let before = FlowMass::now(self.engine.devices());
-        let advance = self
-            .engine
-            .advance(start, end, &self.life.inputs)
-            .map_err(|why| {
-                self.life.mode = Mode::Failed;
-                Error::Solver(why.to_string())
-            })?;
+        let advanced = match watcher {
+            None => {
+                let advance = self.engine.advance(start, wanted, &self.life.inputs);
+                advance.map(|advance| (advance, wanted))
+            }
+            Some(watcher) => self.advance_watched((start, wanted), &before, watcher),
+        };
+        let (advance, end) = advanced.map_err(|why| {
+            self.life.mode = Mode::Failed;
+            Error::Solver(why.to_string())
+        })?;
         let outputs = outputs::sample(&self.table, self.engine.as_ref(), &before, end - start)
             .map_err(|why| {
                 self.life.mode = Mode::Failed;
                 Error::Solver(format!("at t = {end} s: {why}"))
             })?;
-        self.life.outputs = outputs;
+        self.life.before = std::mem::replace(&mut self.life.outputs, outputs);
+        self.life.steps = [end - start, self.life.steps[0]];
         self.life.time = end;
         self.life.communication_steps += 1;
         self.hold_inputs(end - start);
         Ok(StepReport {
             time: end,
+            ended_early: end < wanted,
             substeps: advance.substeps,
             smallest_step: advance.smallest_step,
             bound_by: advance.bound_by,
             iterations: advance.iterations,
         })
+    }
+
+    /// One internal step after the other; gives the end that was met.
+    fn advance_watched(
+        &mut self,
+        (start, mut end): (f64, f64),
+        before: &FlowMass,
+        watcher: &mut Watcher<'_>,
+    ) -> Result<(Advance, f64), SolverError> {
+        let mut advance = Advance::none();
+        self.engine.begin(start, &self.life.inputs);
+        let mut time = start;
+        while time < end {
+            time = self
+                .engine
+                .substep((start, end), &self.life.inputs, &mut advance)?;
+            let mut moment = Intermediate {
+                component: self,
+                start,
+                time,
+                before,
+                outputs: None,
+            };
+            match watcher(&mut moment) {
+                Wish::GoOn => {}
+                Wish::EndAt(wanted) if wanted > time => end = end.min(wanted),
+                // What has passed, or is no time at all: now.
+                Wish::EndAt(_) => end = time,
+            }
+        }
+        Ok((advance, end))
     }
 
     /// End of the step.

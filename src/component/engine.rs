@@ -46,6 +46,18 @@ pub(crate) struct Advance {
     pub(crate) iterations: u32,
 }
 
+impl Advance {
+    /// Before the first internal step.
+    pub(crate) fn none() -> Self {
+        Self {
+            substeps: 0,
+            smallest_step: f64::INFINITY,
+            bound_by: StepBound::Communication,
+            iterations: 0,
+        }
+    }
+}
+
 /// A gate after the last advance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GateState {
@@ -97,6 +109,21 @@ pub(crate) trait Engine: Send {
     /// The solver could not go on; the state is then not to be stepped any more.
     fn advance(&mut self, start: f64, end: f64, inputs: &Inputs) -> Result<Advance, SolverError>;
 
+    /// Begins a communication step at `start` that goes on with [`Engine::substep`].
+    fn begin(&mut self, start: f64, inputs: &Inputs);
+
+    /// One internal step of a communication step from `span.0` to `span.1` [s], added to `advance`; the time reached,
+    /// at most `span.1`. Devices and readings are those of that time.
+    ///
+    /// # Errors
+    /// As [`Engine::advance`].
+    fn substep(
+        &mut self,
+        span: (f64, f64),
+        inputs: &Inputs,
+        advance: &mut Advance,
+    ) -> Result<f64, SolverError>;
+
     /// Devices after the last advance (or at the start).
     fn devices(&self) -> &Devices;
 
@@ -114,6 +141,12 @@ pub(crate) trait Engine: Send {
     /// # Errors
     /// The bytes are not such a state; the engine is then as it was.
     fn restore(&mut self, bytes: &[u8]) -> Result<(), String>;
+
+    /// Whether [`Engine::restore`] would take these bytes.
+    ///
+    /// # Errors
+    /// They are not such a state.
+    fn check(&self, bytes: &[u8]) -> Result<(), String>;
 
     /// The account of material.
     fn ledger(&self) -> MassLedger;

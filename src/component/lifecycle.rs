@@ -11,6 +11,7 @@ pub(super) enum Call {
     SetTunable,
     SetFixed,
     DoStep,
+    GetDerivatives,
     Terminate,
 }
 
@@ -28,7 +29,7 @@ const NO: bool = false;
 
 /// get, save, restore and reset are allowed in every mode and have no row.
 #[rustfmt::skip]
-const TABLE: [(Call, &str, [bool; 5]); 7] = [
+const TABLE: [(Call, &str, [bool; 5]); 8] = [
     //                                                    Instantiated  Initialization  Stepping  Terminated  Failed
     (Call::EnterInitialization, "enter_initialization",      [YES,          NO,             NO,       NO,         NO]),
     (Call::ExitInitialization,  "exit_initialization",       [NO,           YES,            NO,       NO,         NO]),
@@ -36,6 +37,7 @@ const TABLE: [(Call, &str, [bool; 5]); 7] = [
     (Call::SetTunable,          "set of a tunable parameter", [YES,         YES,            YES,      NO,         NO]),
     (Call::SetFixed,            "set of a fixed parameter",  [YES,          YES,            NO,       NO,         NO]),
     (Call::DoStep,              "do_step",                   [NO,           NO,             YES,      NO,         NO]),
+    (Call::GetDerivatives,      "get_output_derivatives",    [NO,           NO,             YES,      YES,        YES]),
     (Call::Terminate,           "terminate",                 [NO,           NO,             YES,      NO,         YES]),
 ];
 

@@ -4,7 +4,8 @@
 //! the variables in `variables`, the map from errors to numbers in `status`. What is advanced stands behind
 //! `engine`; what a saved state looks like in `snapshot`.
 //!
-//! Inputs are held over a step (unless [`Component::set_input_derivatives`] gave a slope); outputs are sampled once
+//! Fixed parameters may be set until initialisation ends; the engine is built anew for them when it is next needed
+//! (`parameters`). Inputs are held over a step (unless [`Component::set_input_derivatives`] gave a slope); outputs are sampled once
 //! at its end. A refused call changes nothing. A failed step leaves time and outputs at the last good step and
 //! the component in [`Mode::Failed`].
 
@@ -14,13 +15,16 @@ mod engine;
 mod error;
 mod lifecycle;
 mod outputs;
+mod parameters;
 mod points;
 mod reports;
 mod sampling;
 mod simulation;
+mod slopes;
 mod snapshot;
 mod status;
 mod variables;
+mod watch;
 
 pub use error::{Error, Severity};
 pub use points::next_point;
@@ -30,6 +34,7 @@ pub use variables::{
     Causality, Start, ValueKind, ValueReference, Variability, Variable, VariableTable,
     variables_markdown,
 };
+pub use watch::{Intermediate, Wish};
 
 use crate::scene::Scene;
 use engine::{Engine, Inputs, Ramp};
@@ -53,12 +58,19 @@ pub enum Mode {
 
 /// A steppable granular-flow unit.
 pub struct Component {
+    /// As its text has it.
+    base: Scene,
+    /// With the parameters that the engine was built for.
     scene: Scene,
+    /// These parameters, in the order of [`Scene::adjustables`].
+    built: Vec<f64>,
     table: VariableTable,
     fingerprint: [u8; 32],
     engine: Box<dyn Engine>,
     /// Threads of the sweeps: no part of the state, results do not depend on it.
     threads: usize,
+    /// Inputs that were clamped since somebody asked: no part of the state.
+    notes: Vec<String>,
     life: Life,
 }
 
@@ -72,8 +84,16 @@ struct Life {
     stop: Option<f64>,
     communication_steps: u64,
     inputs: Inputs,
+    /// Values of the scene's adjustable numbers that were set, in their order.
+    parameters: Vec<f64>,
+    /// Whether inputs out of range are clamped instead of refused.
+    saturate_inputs: bool,
     /// Flat output values as of the last good step; see `outputs`.
     outputs: Vec<f64>,
+    /// Those of the step before; see `slopes`.
+    before: Vec<f64>,
+    /// Lengths of the last two steps, the last one first; 0 where there was none [s].
+    steps: [f64; 2],
 }
 
 impl Component {
@@ -86,12 +106,16 @@ impl Component {
         let threads = 1;
         let (engine, life) = Self::start(scene, &table, threads)?;
         let fingerprint = snapshot::fingerprint(&scene.source);
+        let built = life.parameters.clone();
         Ok(Self {
+            base: scene.clone(),
             scene: scene.clone(),
+            built,
             table,
             fingerprint,
             engine,
             threads,
+            notes: Vec::new(),
             life,
         })
     }
@@ -118,15 +142,25 @@ impl Component {
             stop: None,
             communication_steps: 0,
             inputs,
+            parameters: scene.adjustables.iter().map(|a| a.start).collect(),
+            saturate_inputs: false,
+            before: outputs.clone(),
             outputs,
+            steps: [0.0; 2],
         };
         Ok((engine, life))
     }
 
-    /// The scene it was built from.
+    /// The scene it was built from, with the parameters it was built for.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// The scene as its text has it.
+    #[must_use]
+    pub fn base_scene(&self) -> &Scene {
+        &self.base
     }
 
     /// The one table of variables.
@@ -188,9 +222,10 @@ impl Component {
     /// Initialization -> Stepping. Outputs are those of the start.
     ///
     /// # Errors
-    /// [`Error::NotAllowedNow`].
+    /// [`Error::NotAllowedNow`]; those of [`Component::settle`]: the mode stays, parameters may be corrected.
     pub fn exit_initialization(&mut self) -> Result<(), Error> {
         lifecycle::check(Call::ExitInitialization, self.life.mode)?;
+        self.settle()?;
         self.life.mode = Mode::Stepping;
         Ok(())
     }
@@ -219,29 +254,51 @@ impl Component {
     /// # Errors
     /// [`Error::Snapshot`] for bytes of another version or scene, cut short or corrupt; the component stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        let (life, engine) = self.opened(bytes)?;
+        self.take_over(life, engine)
+    }
+
+    /// Whether [`Component::restore`] would take these bytes, as far as can be told without building anything.
+    ///
+    /// # Errors
+    /// As [`Component::restore`].
+    pub fn check_saved(&self, bytes: &[u8]) -> Result<(), Error> {
+        let (_, engine) = self.opened(bytes)?;
+        if engine.is_empty() {
+            return Ok(());
+        }
+        self.engine.check(engine).map_err(Error::Snapshot)
+    }
+
+    /// Life and bytes of the engine of a saved state that fits this component's table.
+    fn opened<'b>(&self, bytes: &'b [u8]) -> Result<(Life, &'b [u8]), Error> {
         let payload = snapshot::open(&self.fingerprint, bytes)?;
         let (life, engine): (Life, &[u8]) = snapshot::split(payload).map_err(Error::Snapshot)?;
         let counts = |l: &Life| {
-            (
+            [
                 l.inputs.gate_opening.len(),
                 l.inputs.inflow_rate.len(),
                 l.outputs.len(),
-            )
+                l.before.len(),
+                l.parameters.len(),
+            ]
         };
         if counts(&life) != counts(&self.life) {
             return Err(Error::Snapshot(format!(
-                "found {:?} gates, inflows and output values, allowed {:?} (this scene's)",
+                "found {:?} gates, inflows, output values (twice) and parameters, allowed {:?} (this scene's)",
                 counts(&life),
                 counts(&self.life)
             )));
         }
-        self.engine.restore(engine).map_err(Error::Snapshot)?;
-        self.life = life;
-        Ok(())
+        Ok((life, engine))
     }
 
-    /// The state without header: length of life, life, engine.
+    /// The state without header: length of life, life, engine. While parameters wait for their engine it is that of
+    /// the start, and nothing stands for it.
     fn payload(&self, life: &Life) -> Result<Vec<u8>, String> {
+        if self.is_unsettled() {
+            return snapshot::join(life, &[]);
+        }
         snapshot::join(life, &self.engine.save()?)
     }
 
@@ -250,7 +307,10 @@ impl Component {
     /// # Errors
     /// [`Error::Setup`]; the component stays as it was.
     pub fn reset(&mut self) -> Result<(), Error> {
-        (self.engine, self.life) = Self::start(&self.scene, &self.table, self.threads)?;
+        (self.engine, self.life) = Self::start(&self.base, &self.table, self.threads)?;
+        self.scene = self.base.clone();
+        self.built = self.life.parameters.clone();
+        self.notes.clear();
         Ok(())
     }
 

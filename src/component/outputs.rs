@@ -77,7 +77,12 @@ impl Moment<'_> {
     fn value(&self, source: Source, k: usize) -> f64 {
         let flag = |yes: bool| if yes { 1.0 } else { 0.0 };
         match source {
-            Source::Time | Source::Threads | Source::GateOpening(_) | Source::InflowRate(_) => 0.0,
+            Source::Time
+            | Source::Threads
+            | Source::SaturateInputs
+            | Source::Adjustable(_)
+            | Source::GateOpening(_)
+            | Source::InflowRate(_) => 0.0,
             Source::GateActualOpening(i) => self.devices.gates[i].opening,
             Source::GateBlocked(i) => flag(self.devices.gates[i].blocked),
             Source::InflowActualRate(i) => {

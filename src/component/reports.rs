@@ -5,8 +5,10 @@ use crate::solver::StepBound;
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepReport {
-    /// Time reached: t + h, bit for bit [s].
+    /// Time reached: t + h, or where a watcher ended the step, bit for bit [s].
     pub time: f64,
+    /// Whether a watcher ended the step before t + h.
+    pub ended_early: bool,
     /// Internal steps taken.
     pub substeps: u32,
     /// Smallest internal step [s].

@@ -27,6 +27,8 @@ struct Simulation<const D: usize> {
     sampler: Sampler<D>,
     /// Readings of a scene that sleeps: they do not change until it wakes.
     still: OnceLock<Vec<Reading>>,
+    /// Whether the scene slept when the communication step began.
+    slept: bool,
     devices: Devices,
     walls: usize,
     spacing: f64,
@@ -60,6 +62,7 @@ impl<const D: usize> Simulation<D> {
             solver,
             sampler: Sampler::new(scene),
             still: OnceLock::new(),
+            slept: false,
             devices: Devices::default(),
             walls: scene.walls.len(),
             spacing: scene.numerics.spacing,
@@ -99,60 +102,78 @@ impl<const D: usize> Simulation<D> {
         };
     }
 
-    fn advance_inside(
+    /// One internal step.
+    fn advance_once(
         &mut self,
-        start: f64,
-        end: f64,
+        (start, end): (f64, f64),
         inputs: &Inputs,
-    ) -> Result<Advance, crate::solver::SolverError> {
-        let mut report = Advance {
-            substeps: 0,
-            smallest_step: f64::INFINITY,
-            bound_by: crate::solver::StepBound::Communication,
-            iterations: 0,
-        };
-        self.state.time = start;
-        let mut ramps = inputs.gate_opening.iter().chain(&inputs.inflow_rate);
-        if ramps.any(|r| r.slope != 0.0) {
-            // What changes within the step would come too late for a sleeper.
-            self.state.rest = RestState::default();
+        report: &mut Advance,
+    ) -> Result<(), crate::solver::SolverError> {
+        let elapsed = self.state.time - start;
+        let openings: Vec<f64> = inputs.gate_opening.iter().map(|r| r.at(elapsed)).collect();
+        let rates: Vec<f64> = inputs.inflow_rate.iter().map(|r| r.at(elapsed)).collect();
+        let Self {
+            state,
+            solver,
+            sampler,
+            ..
+        } = self;
+        let counts = sampler.counts();
+        let done = solver.step(
+            state,
+            end,
+            &StepInputs {
+                openings: &openings,
+                rates: &rates,
+            },
+            &mut |before, after, mass| {
+                if counts {
+                    sampler.count(before, after, mass);
+                }
+            },
+        )?;
+        report.substeps += 1;
+        report.iterations += done.iterations;
+        if done.dt < report.smallest_step {
+            report.smallest_step = done.dt;
+            report.bound_by = done.bound;
         }
-        while self.state.time < end {
-            let elapsed = self.state.time - start;
-            let openings: Vec<f64> = inputs.gate_opening.iter().map(|r| r.at(elapsed)).collect();
-            let rates: Vec<f64> = inputs.inflow_rate.iter().map(|r| r.at(elapsed)).collect();
-            let Self {
-                state,
-                solver,
-                sampler,
-                ..
-            } = self;
-            let counts = sampler.counts();
-            let done = solver.step(
-                state,
-                end,
-                &StepInputs {
-                    openings: &openings,
-                    rates: &rates,
-                },
-                &mut |before, after, mass| {
-                    if counts {
-                        sampler.count(before, after, mass);
-                    }
-                },
-            )?;
-            report.substeps += 1;
-            report.iterations += done.iterations;
-            if done.dt < report.smallest_step {
-                report.smallest_step = done.dt;
-                report.bound_by = done.bound;
-            }
-            // The last of equal steps ends at the end; rounding does not add another.
-            if end - self.state.time < 1e-9 * done.dt {
-                self.state.time = end;
-            }
+        // The last of equal steps ends at the end; rounding does not add another.
+        if end - self.state.time < 1e-9 * done.dt {
+            self.state.time = end;
         }
-        Ok(report)
+        Ok(())
+    }
+
+    /// Internal steps happened: what was read before them is stale.
+    fn refresh(&mut self) {
+        if !(self.slept && self.state.rest.asleep) {
+            self.still = OnceLock::new();
+        }
+        self.refresh_devices();
+    }
+
+    fn failed(&self, error: &crate::solver::SolverError) -> SolverError {
+        SolverError {
+            time: self.state.time,
+            what: error.to_string(),
+        }
+    }
+
+    /// Takes saved bytes apart; refuses what does not fit this scene.
+    fn decoded(&self, bytes: &[u8]) -> Result<Saved<D>, String> {
+        let saved: Saved<D> = snapshot::decode(bytes)?;
+        let fits = saved.state.grains.is_consistent()
+            && saved.state.gates.len() == self.state.gates.len()
+            && saved.state.inflows.len() == self.state.inflows.len()
+            && saved.state.drained.len() == self.state.drained.len()
+            && saved.state.impulse.len() == self.state.impulse.len()
+            && saved.crossed.len() == self.sampler.crossed().len();
+        if fits {
+            Ok(saved)
+        } else {
+            Err("its devices, gauges or particles do not fit this scene".to_owned())
+        }
     }
 
     fn cells(&self, points: &[Vector<D>]) -> CellGrid<D> {
@@ -162,24 +183,48 @@ impl<const D: usize> Simulation<D> {
 
 impl<const D: usize> Engine for Simulation<D> {
     fn advance(&mut self, start: f64, end: f64, inputs: &Inputs) -> Result<Advance, SolverError> {
+        self.begin(start, inputs);
+        let workers = self.solver.workers();
+        let rows = self.state.grains.len();
+        let mut report = Advance::none();
+        let advanced = workers.install(rows, || {
+            while self.state.time < end {
+                self.advance_once((start, end), inputs, &mut report)?;
+            }
+            Ok(())
+        });
+        advanced.map_err(|e| self.failed(&e))?;
+        self.refresh();
+        Ok(report)
+    }
+
+    fn begin(&mut self, start: f64, inputs: &Inputs) {
         self.sampler.begin_step();
-        let slept = self.state.rest.asleep;
+        self.slept = self.state.rest.asleep;
         for impulse in &mut self.state.impulse {
             *impulse = [0.0; D];
         }
+        self.state.time = start;
+        let mut ramps = inputs.gate_opening.iter().chain(&inputs.inflow_rate);
+        if ramps.any(|r| r.slope != 0.0) {
+            // What changes within the step would come too late for a sleeper.
+            self.state.rest = RestState::default();
+        }
+    }
+
+    fn substep(
+        &mut self,
+        span: (f64, f64),
+        inputs: &Inputs,
+        advance: &mut Advance,
+    ) -> Result<f64, SolverError> {
         let workers = self.solver.workers();
         let rows = self.state.grains.len();
-        let report = workers
-            .install(rows, || self.advance_inside(start, end, inputs))
-            .map_err(|e| SolverError {
-                time: self.state.time,
-                what: e.to_string(),
-            })?;
-        if !(slept && self.state.rest.asleep) {
-            self.still = OnceLock::new();
-        }
-        self.refresh_devices();
-        Ok(report)
+        workers
+            .install(rows, || self.advance_once(span, inputs, advance))
+            .map_err(|e| self.failed(&e))?;
+        self.refresh();
+        Ok(self.state.time.min(span.1))
     }
 
     fn devices(&self) -> &Devices {
@@ -234,20 +279,18 @@ impl<const D: usize> Engine for Simulation<D> {
     }
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), String> {
-        let saved: Saved<D> = snapshot::decode(bytes)?;
-        let fits = saved.state.grains.is_consistent()
-            && saved.state.gates.len() == self.state.gates.len()
-            && saved.state.inflows.len() == self.state.inflows.len()
-            && saved.state.drained.len() == self.state.drained.len()
-            && saved.state.impulse.len() == self.state.impulse.len();
-        if !fits || !self.sampler.set_crossed(&saved.crossed) {
-            return Err("its devices, gauges or particles do not fit this scene".to_owned());
-        }
+        let saved = self.decoded(bytes)?;
+        // As many as there are sections, as was just checked.
+        self.sampler.set_crossed(&saved.crossed);
         self.state = saved.state;
         self.still = OnceLock::new();
         self.solver.resume(&self.state);
         self.refresh_devices();
         Ok(())
+    }
+
+    fn check(&self, bytes: &[u8]) -> Result<(), String> {
+        self.decoded(bytes).map(drop)
     }
 
     fn ledger(&self) -> MassLedger {

@@ -4,6 +4,7 @@
 //! `build` turns a [`Scene`] into particles, walls, devices and gauges. No strings with meaning, no missing
 //! values and no units exist below this module.
 
+mod adjust;
 mod build;
 mod error;
 mod ghosts;
@@ -13,6 +14,7 @@ mod reference;
 mod steady_flow;
 mod types;
 
+pub use adjust::Adjustable;
 pub use build::{build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
 pub use reference::{reference_markdown, schema};
@@ -78,10 +80,22 @@ pub fn load(path: &Path) -> Result<Scene, SceneErrors> {
 /// # Errors
 /// [`SceneErrors`] with every problem of the text.
 pub fn parse(file_name: &str, text: &str) -> Result<Scene, SceneErrors> {
+    parse_changed(file_name, text, |_| {})
+}
+
+/// As [`parse`], with what was read changed before it is checked.
+fn parse_changed(
+    file_name: &str,
+    text: &str,
+    change: impl FnOnce(&mut raw::RawScene),
+) -> Result<Scene, SceneErrors> {
     let mut problems = Problems::new(file_name, text);
     let scene = match DeTable::parse_recoverable(text) {
         (document, errors) if errors.is_empty() => raw::read_document(document, &mut problems)
-            .and_then(|scene| lift::lift(&scene, text, &mut problems)),
+            .and_then(|mut scene| {
+                change(&mut scene);
+                lift::lift(&scene, text, &mut problems)
+            }),
         (_, errors) => {
             report_syntax(text, &errors, &mut problems);
             None

@@ -4,6 +4,7 @@
 //! Extensive values of a planar scene (mass, force, discharge) are for the scene's out-of-plane `width`, those of an
 //! axisymmetric one for whole rings.
 
+use super::Adjustable;
 use crate::material::Material;
 use crate::shape::Shape;
 use crate::solver::Numerics;
@@ -68,6 +69,8 @@ pub struct Scene {
     pub schedules: Vec<Schedule>,
     /// What a run writes to its log.
     pub log: LogSettings,
+    /// Numbers that may be changed without touching the text; a component shows them as parameters.
+    pub adjustables: Vec<Adjustable>,
 }
 
 /// Extent and gravity.

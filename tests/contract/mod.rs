@@ -4,6 +4,7 @@
 //! functions of the library (fmu/src/contract.rs takes these files by `#[path]`). An adapter brings a [`Driver`]
 //! and calls [`check_all`]. Adapters must not differ in a single bit: states and values are compared as such.
 
+mod parameters;
 mod refusals;
 mod sameness;
 
@@ -60,6 +61,9 @@ pub(crate) fn check_all(make: Factory, scene: &Scene) {
     sameness::instances_do_not_know_each_other(&stage);
     sameness::reset_is_as_new(&stage);
     sameness::steps_end_where_they_are_told_to(&stage);
+    parameters::parameters_count_whenever_they_are_set(&stage);
+    parameters::values_that_do_not_go_together_wait_for_each_other(&stage);
+    parameters::inputs_are_clamped_only_as_far_as_allowed(&stage);
     sameness::mass_is_exact_at_every_step(&stage);
 }
 

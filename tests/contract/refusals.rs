@@ -1,6 +1,11 @@
 //! Wrong calls: each is refused with a message that says what was found and what is allowed, and leaves no trace.
 
+use std::time::{Duration, Instant};
+
 use super::{Driver, Outcome, Refusal, Stage};
+
+/// A refusal that takes longer hangs an orchestrator.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Where in its life an instance gets the wrong call.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -36,6 +41,12 @@ fn wrong_calls() -> Vec<(Place, Call, &'static str)> {
         (Stepping, |d, s| d.do_step(2.0 * s.step(), f64::NAN), "do_step: h: found NaN s"),
         (Stepping, |d, s| d.do_step(2.0 * s.step(), f64::INFINITY), "do_step: h: found inf s"),
         (Stepping, |d, s| d.do_step(2.0 * s.step(), 1e-300), "allowed a step that changes the time"),
+        (Stepping, |d, s| d.do_step(2.0 * s.step(), 5e-324), "allowed a step that changes the time"),
+        (Stepping, |d, s| d.do_step(f64::INFINITY, s.step()), "do_step: t: found inf s"),
+        (Stepping, |d, s| d.set(&[s.reference("solver.resolution_scale")], &[2.0]), "set of a fixed parameter is not allowed in mode Stepping; allowed in Instantiated or Initialization"),
+        (Stepping, |d, s| d.set(&[s.gate(), s.reference("solver.resolution_scale")], &[0.5, 2.0]), "set of a fixed parameter is not allowed in mode Stepping"),
+        (New, |d, s| d.set(&[s.reference("solver.resolution_scale")], &[0.0]), "solver.resolution_scale: found 0, allowed a number from 0.1 to 10"),
+        (New, |d, s| d.set(&[s.reference("solver.resolution_scale")], &[f64::NAN]), "solver.resolution_scale: found NaN"),
         (Stepping, |d, s| d.do_step(2.0 * s.step(), 20.0), "allowed a step that ends by 10 s, the stop time"),
         (Stepping, |d, s| d.set(&[s.gate()], &[f64::NAN]), "found NaN, allowed a number from 0 to 1"),
         (Stepping, |d, s| d.set(&[s.gate()], &[f64::INFINITY]), "found inf, allowed a number from 0 to 1"),
@@ -57,7 +68,11 @@ fn wrong_calls() -> Vec<(Place, Call, &'static str)> {
 
 /// Makes the call; whether the adapter could express it.
 fn is_refused(driver: &mut dyn Driver, stage: &Stage, call: Call, expected: &str) -> bool {
-    match call(driver, stage) {
+    let begin = Instant::now();
+    let answer = call(driver, stage);
+    let took = begin.elapsed();
+    assert!(took < PATIENCE, "took {took:?}, expected: {expected}");
+    match answer {
         Ok(()) => panic!("accepted, but expected a refusal with: {expected}"),
         Err(Refusal::Inexpressible) => false,
         Err(Refusal::Message(message)) => {

@@ -148,3 +148,66 @@ fn hash_of_the_state_is_that_of_what_comes_next() {
     assert_eq!(limited.state_hash(), free.state_hash());
     assert_eq!(free.state_hash().len(), 64);
 }
+
+#[test]
+fn slopes_of_outputs_are_those_of_the_last_points() {
+    let mut channel = stepping("tests/scenes/devices.toml");
+    set(&mut channel, "gate.sluice.opening", 1.0);
+    let find = |c: &sandgate::component::Component, name: &str| {
+        c.variables().by_name(name).unwrap().reference
+    };
+    let slope = |c: &sandgate::component::Component, name: &str| {
+        let mut values = [f64::NAN];
+        c.output_derivatives(&[find(c, name)], &mut values).unwrap();
+        values[0]
+    };
+    let [depth, mass, rate] = [
+        "gauge.depth.depth",
+        "inflow.feed.mass",
+        "inflow.feed.actual_rate",
+    ];
+    assert_eq!(slope(&channel, depth), 0.0, "one point has no slope");
+    let (mut last, mut length) = ([0.0; 3], 0.0);
+    let lengths = [0.005, 0.003, 0.004].into_iter().cycle().take(20);
+    for (k, h) in lengths.enumerate() {
+        let before = [depth, mass, rate].map(|name| value(&channel, name));
+        channel.do_step(channel.time(), h).unwrap();
+        let after = [depth, mass, rate].map(|name| value(&channel, name));
+        for (place, name) in [depth, mass].into_iter().enumerate() {
+            let expected = (after[place] - before[place]) / h;
+            assert!(
+                (slope(&channel, name) - expected).abs() <= 1e-9 * expected.abs(),
+                "{name}"
+            );
+        }
+        // A mean over a step belongs to its middle, so the first step has no slope.
+        let expected = if k == 0 {
+            0.0
+        } else {
+            (after[2] - before[2]) / (0.5 * (h + length))
+        };
+        assert!((slope(&channel, rate) - expected).abs() <= 1e-9 * expected.abs().max(1e-9));
+        (last, length) = (after, h);
+    }
+    assert!(last[1] > 0.0, "the inflow runs");
+    // Slopes are part of the state.
+    let saved = channel.save().unwrap();
+    let mut other = sandgate::component::Component::new(channel.base_scene()).unwrap();
+    other.restore(&saved).unwrap();
+    for name in [depth, mass, rate] {
+        assert_eq!(
+            slope(&other, name).to_bits(),
+            slope(&channel, name).to_bits()
+        );
+    }
+    let mut values = [0.0];
+    for name in [
+        "solver.steps",
+        "gate.sluice.opening",
+        "gauge.depth.validity",
+    ] {
+        let refused = channel.output_derivatives(&[find(&channel, name)], &mut values);
+        let refused = refused.unwrap_err().to_string();
+        assert!(refused.contains("variability continuous"), "{refused}");
+    }
+}

@@ -14,6 +14,7 @@ mod bus;
 mod cli;
 mod component;
 mod contract;
+mod fmi_page;
 #[cfg(feature = "cli")]
 mod cross;
 #[cfg(feature = "cli")]
@@ -29,6 +30,7 @@ mod python;
 mod record;
 mod scenes;
 mod shared_library;
+mod states;
 #[path = "../contract/mod.rs"]
 mod suite;
 #[cfg(feature = "cli")]

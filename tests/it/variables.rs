@@ -82,7 +82,12 @@ fn devices_and_gauges_bring_their_variables() {
     let scene = scene::load(&root().join("tests/scenes/devices.toml")).unwrap();
     let table = VariableTable::of(&scene);
     let names: Vec<&str> = table.rows().iter().map(|v| v.name.as_str()).collect();
-    let expected = "time solver.threads gate.sluice.opening gate.sluice.actual_opening gate.sluice.blocked \
+    let expected = "time solver.threads saturate_inputs solver.resolution_scale \
+        material.beads.static_friction_angle material.beads.dynamic_friction_angle \
+        material.beads.inertial_number_scale material.beads.grain_diameter gauge.depth.foot_x gauge.depth.foot_y \
+        gauge.surface.from_x gauge.surface.from_y gauge.surface.to_x gauge.surface.to_y gauge.past_gate.from_x \
+        gauge.past_gate.from_y gauge.past_gate.to_x gauge.past_gate.to_y gauge.probe.at_x gauge.probe.at_y \
+        gauge.front.origin_x gauge.front.origin_y gate.sluice.opening gate.sluice.actual_opening gate.sluice.blocked \
         inflow.feed.rate inflow.feed.actual_rate inflow.feed.mass inflow.feed.blocked outflow.end.mass \
         outflow.end.rate gauge.depth.depth gauge.depth.validity gauge.surface.depth gauge.surface.depth[1] \
         gauge.surface.depth[2] gauge.surface.depth[3] gauge.surface.depth[4] gauge.surface.depth[5] \

@@ -107,9 +107,16 @@ fn line(text: &mut String, cells: &[&str]) {
 
 /// Whether the second part of a name is a name of the scene.
 fn is_device(name: &str) -> bool {
-    ["gate.", "inflow.", "outflow.", "gauge."]
-        .iter()
-        .any(|kind| name.starts_with(kind))
+    [
+        "material.",
+        "wall.",
+        "gate.",
+        "inflow.",
+        "outflow.",
+        "gauge.",
+    ]
+    .iter()
+    .any(|kind| name.starts_with(kind))
 }
 
 /// A device's own name replaced by NAME.

@@ -4,13 +4,16 @@
 //! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals.
 
 use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable};
-use crate::scene::{Gate, Gauge, GaugeKind, Inflow, Outflow, Scene};
+use crate::scene::{Adjustable, Gate, Gauge, GaugeKind, Inflow, Outflow, Scene};
 
 /// Where a row's value comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::component) enum Source {
     Time,
     Threads,
+    SaturateInputs,
+    /// A number of the scene, by place in `Scene::adjustables`.
+    Adjustable(usize),
     /// Inputs, by index of the device.
     GateOpening(usize),
     InflowRate(usize),
@@ -116,6 +119,9 @@ pub(super) fn list(scene: &Scene) -> VariableTable {
         table.sources.push(row.source);
     };
     general().for_each(&mut add);
+    for (i, number) in scene.adjustables.iter().enumerate() {
+        add(parameter_row(i, number));
+    }
     for (i, gate) in scene.gates.iter().enumerate() {
         gate_rows(i, gate).for_each(&mut add);
     }
@@ -147,7 +153,31 @@ fn general() -> impl Iterator<Item = Row> {
     threads.variable.causality = Causality::Parameter;
     threads.variable.variability = Variability::Tunable;
     threads.variable.start = Start::Exact(vec![1.0]);
-    [time, threads].into_iter()
+    let mut saturate = Row::output(
+        "saturate_inputs",
+        "",
+        Source::SaturateInputs,
+        "whether inputs out of their range are clamped to it and reported; otherwise they are refused",
+    )
+    .kind(ValueKind::Boolean)
+    .within(0.0, 1.0);
+    saturate.variable.causality = Causality::Parameter;
+    saturate.variable.variability = Variability::Tunable;
+    saturate.variable.start = Start::Exact(vec![0.0]);
+    [time, threads, saturate].into_iter()
+}
+
+/// A number of the scene, fixed once the component is initialised.
+fn parameter_row(i: usize, number: &Adjustable) -> Row {
+    let (least, most) = number.range;
+    let source = Source::Adjustable(i);
+    let mut row = Row::output(&number.name, number.unit, source, &number.description)
+        .display(number.display_unit)
+        .within(least, most);
+    row.variable.causality = Causality::Parameter;
+    row.variable.variability = Variability::Fixed;
+    row.variable.start = Start::Exact(vec![number.start]);
+    row
 }
 
 const PERCENT: Option<(&str, f64)> = Some(("%", 100.0));
@@ -241,6 +271,12 @@ fn outflow_rows(i: usize, outflow: &Outflow) -> impl Iterator<Item = Row> {
 fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
     let name = &gauge.name;
     let length = length_display(scene);
+    // A foot may be moved, and its line with it, but not out of the domain.
+    let domain = &scene.domain;
+    let across = |up: &[f64; 3]| -> f64 {
+        let extent = |a: usize| (domain.upper[a] - domain.lower[a]) * up[a].abs();
+        (0..scene.dimension.axes()).map(extent).sum()
+    };
     let reading = |suffix: &str, unit: &'static str, first: usize, text: &str| {
         let source = Source::Reading { gauge: i, first };
         Row::output(
@@ -251,22 +287,25 @@ fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
         )
     };
     let mut rows = match &gauge.kind {
-        GaugeKind::Depth { length: most, .. } => {
+        GaugeKind::Depth {
+            length: most, up, ..
+        } => {
             vec![
                 reading("depth", "m", 0, "depth of material")
                     .display(length)
-                    .within(0.0, *most),
+                    .within(0.0, most.max(across(up))),
             ]
         }
         GaugeKind::Profile {
             count,
             length: most,
+            up,
             ..
         } => {
             let depth = || {
                 reading("depth", "m", 0, "depths of material")
                     .display(length)
-                    .within(0.0, *most)
+                    .within(0.0, most.max(across(up)))
             };
             let mut rows = vec![depth()];
             rows[0].variable.shape = vec![*count];

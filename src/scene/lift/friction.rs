@@ -44,7 +44,7 @@ impl FrictionKeys<'_> {
 }
 
 /// The values of a preset.
-fn values(preset: Preset) -> (MuI, Grains) {
+pub(in crate::scene) fn values(preset: Preset) -> (MuI, Grains) {
     let (law, material) = match preset {
         Preset::GlassBeads => (MuI::glass_beads(), Material::glass_beads()),
         Preset::Sand08 => (MuI::sand_08(), Material::sand_08()),

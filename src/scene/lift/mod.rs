@@ -23,6 +23,7 @@ use super::raw::{
     At, Coordinates, DimensionWord, Entry, Named, Place, Problems, RawScene, nearest,
 };
 use super::types::{Dimension, Domain, NamedMaterial, Point, Scene};
+pub(super) use friction::values as preset_values;
 use geometry::Region;
 
 /// The scene, or `None` if a problem was reported.
@@ -43,12 +44,14 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     let schedules = lift.schedules(&inflows);
     let log = lift.log(run);
     let (dimension, domain) = (lift.dimension, lift.domain);
+    let domain = domain?;
+    let adjustables = super::adjust::adjustables(raw, domain.lower, domain.upper, dimension.axes());
     Some(Scene {
         name: raw.name.as_ref()?.value.0.clone(),
         title: raw.title.as_ref()?.value.0.clone(),
         source: source.to_owned(),
         dimension,
-        domain: domain?,
+        domain,
         numerics: numerics?,
         materials: materials.into_iter().collect::<Option<_>>()?,
         bodies,
@@ -60,6 +63,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
         run: run?,
         schedules,
         log: log?,
+        adjustables,
     })
     .filter(|_| problems.is_empty())
 }

@@ -1,0 +1,84 @@
+//! Fixed parameters: numbers of the scene that may be set until initialisation ends.
+//!
+//! Setting them only notes the values, so that several calls may change what belongs together (both friction angles,
+//! say). The engine is built anew when it is next needed: when initialisation ends, or when an adapter wants outputs
+//! before that and calls [`Component::settle`].
+
+use super::engine::{self, Engine};
+use super::outputs::{self, FlowMass};
+use super::{Component, Error, Life};
+use crate::scene::{Scene, SceneErrors};
+
+impl Component {
+    /// Whether fixed parameters were set for which the engine has not been built yet.
+    #[must_use]
+    pub fn is_unsettled(&self) -> bool {
+        !same_bits(&self.life.parameters, &self.built)
+    }
+
+    /// Builds the engine anew if fixed parameters were set since it was built, and samples the outputs of the start.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`] names the rule of scenes that the parameters break together, [`Error::Setup`] if the
+    /// scene cannot be built; nothing is changed then.
+    pub fn settle(&mut self) -> Result<(), Error> {
+        if !self.is_unsettled() {
+            return Ok(());
+        }
+        let (scene, engine) = self.build_for(&self.life.parameters)?;
+        let before = FlowMass::now(engine.devices());
+        let outputs =
+            outputs::sample(&self.table, engine.as_ref(), &before, 0.0).map_err(Error::Setup)?;
+        self.life.before.clone_from(&outputs);
+        self.life.outputs = outputs;
+        self.built.clone_from(&self.life.parameters);
+        (self.scene, self.engine) = (scene, engine);
+        Ok(())
+    }
+
+    /// Scene and engine for these parameters, at the start.
+    fn build_for(&self, parameters: &[f64]) -> Result<(Scene, Box<dyn Engine>), Error> {
+        let scene = self
+            .base
+            .adjusted(parameters)
+            .map_err(|e| broken_rule(&e))?;
+        let mut engine = engine::build(&scene)?;
+        engine.set_threads(self.threads);
+        Ok((scene, engine))
+    }
+
+    /// Goes to a saved state. `engine` is empty if its parameters waited for their engine.
+    pub(super) fn take_over(&mut self, life: Life, engine: &[u8]) -> Result<(), Error> {
+        if engine.is_empty() {
+            // The engine of the start, whatever its parameters: `settle` builds the one that is wanted.
+            let start: Vec<f64> = self.base.adjustables.iter().map(|a| a.start).collect();
+            (self.scene, self.engine) = self.build_for(&start)?;
+            self.built = start;
+        } else if same_bits(&life.parameters, &self.built) {
+            self.engine.restore(engine).map_err(Error::Snapshot)?;
+        } else {
+            let (scene, mut fresh) = self.build_for(&life.parameters)?;
+            fresh.restore(engine).map_err(Error::Snapshot)?;
+            self.built.clone_from(&life.parameters);
+            (self.scene, self.engine) = (scene, fresh);
+        }
+        self.life = life;
+        self.notes.clear();
+        Ok(())
+    }
+}
+
+/// The first rule that the parameters break together.
+fn broken_rule(errors: &SceneErrors) -> Error {
+    let first = errors.problems().first();
+    Error::BadArgument {
+        call: "fixed parameters",
+        what: first.map_or_else(String::new, |e| e.key.clone()),
+        found: first.map_or_else(|| errors.to_string(), |e| e.found.clone()),
+        allowed: first.map_or_else(String::new, |e| e.allowed.clone()),
+    }
+}
+
+fn same_bits(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}
