@@ -1,6 +1,6 @@
 //! Values between the typed functions of the standards and the component's plain f64.
 
-use sandgate::component::{Component, Error, ValueKind, Variable};
+use sandgate::component::{Error, ValueKind, VariableTable};
 
 use crate::fault::Fault;
 use crate::guard::{Out, Plain};
@@ -100,20 +100,29 @@ impl Value for Flag {
     }
 }
 
+/// Whose variables are got and set: an instance's, or those of a step that is running.
+pub(crate) trait Values {
+    /// For names, kinds and lengths.
+    fn table(&self) -> &VariableTable;
+    /// As `Component::get`.
+    fn get(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault>;
+    /// As `Component::set`.
+    fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault>;
+}
+
 /// Reads variables of kind `V` into `count` places; `make` turns each value into what C holds.
 pub(crate) fn get<V: Value, C: Plain>(
-    instance: &mut Instance,
+    from: &mut (impl Values + ?Sized),
     references: &[u32],
     out: &mut Out<C>,
     count: usize,
     make: impl Fn(V) -> C,
 ) -> Result<(), Fault> {
-    check(&instance.component, "get", references, V::KIND, count)?;
-    instance.values.clear();
-    instance.values.resize(count, 0.0);
-    instance.component.get(references, &mut instance.values)?;
-    let made: Result<Vec<C>, String> = instance
-        .values
+    out.check(count, "values")?;
+    check(from.table(), "get", references, V::KIND, count)?;
+    let mut values = vec![0.0; count];
+    from.get(references, &mut values)?;
+    let made: Result<Vec<C>, String> = values
         .iter()
         .map(|value| V::leave(*value).map(&make))
         .collect();
@@ -122,24 +131,44 @@ pub(crate) fn get<V: Value, C: Plain>(
 
 /// Sets variables of kind `V`, all or none; `make` turns what C holds into a value.
 pub(crate) fn set<V: Value, C: Copy>(
-    instance: &mut Instance,
+    into: &mut (impl Values + ?Sized),
     references: &[u32],
     values: &[C],
     make: impl Fn(C) -> Result<V, String>,
 ) -> Result<(), Fault> {
-    check(
-        &instance.component,
-        "set",
-        references,
-        V::KIND,
-        values.len(),
-    )?;
+    check(into.table(), "set", references, V::KIND, values.len())?;
     let entered: Result<Vec<f64>, String> = values
         .iter()
         .map(|value| make(*value).and_then(V::enter))
         .collect();
-    let entered = entered.map_err(Fault::Border)?;
-    Ok(instance.component.set(references, &entered)?)
+    into.set(references, &entered.map_err(Fault::Border)?)
+}
+
+/// Slopes of outputs; orders other than 1 are refused.
+pub(crate) fn output_derivatives(
+    instance: &Instance,
+    references: &[u32],
+    orders: &[i32],
+    out: &mut Out<f64>,
+    count: usize,
+) -> Result<(), Fault> {
+    if let Some(order) = orders.iter().find(|order| **order != 1) {
+        return Err(Fault::border(format!(
+            "order: found {order}, allowed 1 (maxOutputDerivativeOrder)"
+        )));
+    }
+    out.check(count, "values")?;
+    check_length(
+        instance.table(),
+        "get_output_derivatives",
+        references,
+        count,
+    )?;
+    let mut slopes = vec![0.0; count];
+    instance
+        .component
+        .output_derivatives(references, &mut slopes)?;
+    out.write(&slopes, "values")
 }
 
 /// For functions of a type that no variable has: fine for none, an error for any.
@@ -153,14 +182,14 @@ pub(crate) fn no_variable_of_type(name: &str, count: usize) -> Result<(), Fault>
 }
 
 fn check(
-    component: &Component,
+    table: &VariableTable,
     call: &'static str,
     references: &[u32],
     kind: ValueKind,
     count: usize,
 ) -> Result<(), Fault> {
     for reference in references {
-        if let Some(row) = component.variables().by_reference(*reference)
+        if let Some(row) = table.by_reference(*reference)
             && row.kind != kind
         {
             return Err(Fault::border(format!(
@@ -171,32 +200,37 @@ fn check(
             )));
         }
     }
-    check_length(component, call, references, count)
+    check_length(table, call, references, count)
 }
 
-/// Refuses a count that is not the variables', before room is made for what a caller claims. Unknown references are
-/// left to the component.
+/// Refuses unknown references, and a count that is not the variables', before room is made for what a caller claims.
 pub(crate) fn check_length(
-    component: &Component,
+    table: &VariableTable,
     call: &'static str,
     references: &[u32],
     count: usize,
 ) -> Result<(), Fault> {
-    let rows = references
-        .iter()
-        .map(|r| component.variables().by_reference(*r));
-    let lengths: Option<Vec<usize>> = rows.map(|row| row.map(Variable::len)).collect();
-    match lengths.map(|lengths| lengths.iter().sum::<usize>()) {
-        Some(expected) if expected != count => Err(Fault::Component(Error::BadArgument {
-            call,
-            what: "number of values".to_owned(),
-            found: count.to_string(),
-            allowed: format!("{expected}, as many as these variables have"),
-        })),
-        Some(_) => Ok(()),
-        // The component names the unknown reference; it takes no values for it.
-        None => Ok(component.get(references, &mut [])?),
+    let mut expected = 0;
+    for reference in references {
+        let Some(row) = table.by_reference(*reference) else {
+            return Err(Fault::Component(Error::BadArgument {
+                call,
+                what: "value reference".to_owned(),
+                found: reference.to_string(),
+                allowed: format!("0 to {}", table.rows().len() - 1),
+            }));
+        };
+        expected += row.len();
     }
+    if expected == count {
+        return Ok(());
+    }
+    Err(Fault::Component(Error::BadArgument {
+        call,
+        what: "number of values".to_owned(),
+        found: count.to_string(),
+        allowed: format!("{expected}, as many as these variables have"),
+    }))
 }
 
 fn kind_name(kind: ValueKind) -> &'static str {

@@ -5,7 +5,7 @@ use std::ffi::{CString, c_char};
 use sandgate::component::{Causality, Mode, Start, ValueKind, Variability, Variable};
 use sandgate::scene::{self, Scene, SceneErrors};
 
-use crate::access::check_length;
+use crate::access::{Values, check_length};
 use crate::fault::Fault;
 use crate::guard::{
     CLedger, CStepReport, CVariable, Environment, Handle, In, Need, Out, PlainLogger, Text, shield,
@@ -261,7 +261,7 @@ pub(crate) extern "C" fn sandgate_set(
     code(instance.call("sandgate_set", Need::Sound, |i| {
         let references = references.slice(reference_count, "references")?;
         let values = values.slice(value_count, "values")?;
-        Ok(i.component.set(references, values)?)
+        i.set(references, values)
     }))
 }
 
@@ -276,11 +276,10 @@ pub(crate) extern "C" fn sandgate_get(
     code(instance.call("sandgate_get", Need::Sound, |i| {
         let references = references.slice(reference_count, "references")?;
         values.check(value_count, "values")?;
-        check_length(&i.component, "get", references, value_count)?;
-        i.values.clear();
-        i.values.resize(value_count, 0.0);
-        i.component.get(references, &mut i.values)?;
-        values.write(&i.values, "values")
+        check_length(i.table(), "get", references, value_count)?;
+        let mut found = vec![0.0; value_count];
+        i.get(references, &mut found)?;
+        values.write(&found, "values")
     }))
 }
 

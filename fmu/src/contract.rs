@@ -7,10 +7,12 @@
 )]
 
 mod c_driver;
+mod calls;
 mod fmi2_driver;
 mod fmi3_driver;
 #[path = "../../tests/contract/mod.rs"]
 mod suite;
+mod updates;
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::path::Path;
@@ -21,6 +23,9 @@ use sandgate::scene::{self, Scene};
 
 use crate::guard::packed;
 use suite::{Outcome, Refusal, check_all};
+
+/// `fmi3IntermediateUpdateCallback`.
+type Update = extern "C" fn(*mut c_void, f64, bool, bool, bool, bool, *mut bool, *mut f64);
 
 /// What the importer's logger was told since the last look.
 type Messages = Box<Mutex<Vec<String>>>;

@@ -36,12 +36,14 @@ impl Fault {
     }
 }
 
-/// Status of FMI 2 and FMI 3: the numbers are the same. Warning, Discard and Fatal are never given: importers take the
+/// Status of FMI 2 and FMI 3: the numbers are the same. Warning goes to loggers only. Warning, Discard and Fatal are never given: importers take the
 /// first two for failures or repeat the step for ever, and no memory is corrupt after a caught panic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub(crate) enum Status {
     Ok = 0,
+    /// For log messages; no call answers it.
+    Warning = 1,
     Error = 3,
 }
 

@@ -7,7 +7,7 @@ use std::ffi::c_char;
 use sandgate::component::{Error, Mode};
 use sandgate::fmi::FmiVersion;
 
-use crate::access::{Flag, get, no_variable_of_type, set};
+use crate::access::{Flag, get, no_variable_of_type, output_derivatives, set};
 use crate::fault::{Fault, Status};
 use crate::guard::{Callbacks2, Handle, In, Need, Out, StateHandle, StateSlot, Text};
 use crate::instance::{Experiment, Instance, create};
@@ -336,12 +336,16 @@ pub(crate) extern "C" fn fmi2SetRealInputDerivatives(
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2GetRealOutputDerivatives(
     c: Handle,
-    _vr: In<u32>,
-    _n: usize,
-    _order: In<i32>,
-    _value: Out<f64>,
+    vr: In<u32>,
+    n: usize,
+    order: In<i32>,
+    mut value: Out<f64>,
 ) -> Status {
-    c.not_provided("fmi2GetRealOutputDerivatives", "maxOutputDerivativeOrder")
+    c.call("fmi2GetRealOutputDerivatives", Need::Sound, |i| {
+        let (vr, order) = (vr.slice(n, "vr")?, order.slice(n, "order")?);
+        output_derivatives(i, vr, order, &mut value, n)
+    })
+    .into()
 }
 
 #[unsafe(no_mangle)]

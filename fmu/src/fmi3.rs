@@ -7,12 +7,13 @@ use std::ffi::c_char;
 
 use sandgate::fmi::FmiVersion;
 
-use crate::access::{Flag, get, no_variable_of_type, set};
+use crate::access::{Flag, get, no_variable_of_type, output_derivatives, set};
 use crate::fault::{Fault, Status};
 use crate::guard::{
-    Environment, Handle, In, Logger3, Need, Out, StateHandle, StateSlot, Text, UnusedCallback,
+    Environment, Handle, In, IntermediateUpdate3, Logger3, Need, Out, StateHandle, StateSlot, Text,
+    UnusedCallback,
 };
-use crate::instance::{Instance, create};
+use crate::instance::{Instance, Updates, create};
 use crate::log::{Log, Sink};
 
 #[unsafe(no_mangle)]
@@ -87,12 +88,12 @@ pub(crate) extern "C" fn fmi3InstantiateCoSimulation(
     _visible: u8,
     logging: u8,
     event_mode_used: u8,
-    _early_return_allowed: u8,
-    _intermediate: In<u32>,
-    _n_intermediate: usize,
+    early_return_allowed: u8,
+    intermediate: In<u32>,
+    n_intermediate: usize,
     environment: Environment,
     log: Logger3,
-    _intermediate_update: UnusedCallback,
+    callback: IntermediateUpdate3,
 ) -> Handle {
     let log = Log::new(Sink::Fmi3(log, environment), logging != 0);
     create("fmi3InstantiateCoSimulation", log, |log| {
@@ -104,7 +105,20 @@ pub(crate) extern "C" fn fmi3InstantiateCoSimulation(
                 "eventModeUsed: found true, allowed false (hasEventMode is false)",
             ));
         }
-        Instance::of_fmu(FmiVersion::V3, token.get("instantiationToken")?, log)
+        let required = intermediate.slice(n_intermediate, "requiredIntermediateVariables")?;
+        let mut instance = Instance::of_fmu(FmiVersion::V3, token.get("instantiationToken")?, log)?;
+        let sets_inputs = instance.sets_inputs(required)?;
+        let early_return_allowed = early_return_allowed != 0;
+        // A callback that may neither read, set nor return early has nothing to do.
+        if callback.is_given() && (early_return_allowed || !required.is_empty()) {
+            instance.updates = Some(Updates {
+                callback,
+                environment,
+                sets_inputs,
+                early_return_allowed,
+            });
+        }
+        Ok(instance)
     })
 }
 
@@ -161,13 +175,15 @@ pub(crate) extern "C" fn fmi3DoStep(
     mut early_return: Out<u8>,
     mut last_time: Out<f64>,
 ) -> Status {
-    c.call("fmi3DoStep", Need::Sound, |i| {
-        let result = i.step(t, h).map(drop);
-        for flag in [&mut event_needed, &mut terminate, &mut early_return] {
+    c.call_with_door("fmi3DoStep", Need::Sound, |i, door| {
+        let result = i.step_with_updates(t, h, door);
+        let returned_early = result.as_ref().is_ok_and(|report| report.ended_early);
+        for flag in [&mut event_needed, &mut terminate] {
             flag.write_if_wanted(0);
         }
+        early_return.write_if_wanted(u8::from(returned_early));
         last_time.write_if_wanted(i.component.time());
-        result
+        result.map(drop)
     })
     .into()
 }
@@ -242,7 +258,7 @@ pub(crate) extern "C" fn fmi3GetFloat64(
     mut values: Out<f64>,
     n_values: usize,
 ) -> Status {
-    c.call("fmi3GetFloat64", Need::Sound, |i| {
+    c.visit("fmi3GetFloat64", |i| {
         get(
             i,
             vr.slice(n, "valueReferences")?,
@@ -262,7 +278,7 @@ pub(crate) extern "C" fn fmi3GetInt64(
     mut values: Out<i64>,
     n_values: usize,
 ) -> Status {
-    c.call("fmi3GetInt64", Need::Sound, |i| {
+    c.visit("fmi3GetInt64", |i| {
         get(
             i,
             vr.slice(n, "valueReferences")?,
@@ -282,7 +298,7 @@ pub(crate) extern "C" fn fmi3GetBoolean(
     mut values: Out<u8>,
     n_values: usize,
 ) -> Status {
-    c.call("fmi3GetBoolean", Need::Sound, |i| {
+    c.visit("fmi3GetBoolean", |i| {
         get(
             i,
             vr.slice(n, "valueReferences")?,
@@ -302,7 +318,7 @@ pub(crate) extern "C" fn fmi3SetFloat64(
     values: In<f64>,
     n_values: usize,
 ) -> Status {
-    c.call("fmi3SetFloat64", Need::Sound, |i| {
+    c.visit("fmi3SetFloat64", |i| {
         set::<f64, _>(
             i,
             vr.slice(n, "valueReferences")?,
@@ -321,7 +337,7 @@ pub(crate) extern "C" fn fmi3SetInt64(
     values: In<i64>,
     n_values: usize,
 ) -> Status {
-    c.call("fmi3SetInt64", Need::Sound, |i| {
+    c.visit("fmi3SetInt64", |i| {
         set::<i64, _>(
             i,
             vr.slice(n, "valueReferences")?,
@@ -340,7 +356,7 @@ pub(crate) extern "C" fn fmi3SetBoolean(
     values: In<u8>,
     n_values: usize,
 ) -> Status {
-    c.call("fmi3SetBoolean", Need::Sound, |i| {
+    c.visit("fmi3SetBoolean", |i| {
         let (vr, values) = (
             vr.slice(n, "valueReferences")?,
             values.slice(n_values, "values")?,
@@ -444,6 +460,22 @@ pub(crate) extern "C" fn fmi3SetClock(
     .into()
 }
 
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi3GetOutputDerivatives(
+    c: Handle,
+    vr: In<u32>,
+    n: usize,
+    orders: In<i32>,
+    mut values: Out<f64>,
+    n_values: usize,
+) -> Status {
+    c.call("fmi3GetOutputDerivatives", Need::Sound, |i| {
+        let (vr, orders) = (vr.slice(n, "valueReferences")?, orders.slice(n, "orders")?);
+        output_derivatives(i, vr, orders, &mut values, n_values)
+    })
+    .into()
+}
+
 /// Functions behind a capability that modelDescription.xml does not claim.
 macro_rules! not_provided {
     ($($capability:literal: $name:ident($($argument:ty),*);)*) => {$(
@@ -462,8 +494,6 @@ not_provided! {
         In<u32>, usize, In<u32>, usize, In<f64>, usize, Out<f64>, usize);
     "providesAdjointDerivatives": fmi3GetAdjointDerivative(
         In<u32>, usize, In<u32>, usize, In<f64>, usize, Out<f64>, usize);
-    "maxOutputDerivativeOrder": fmi3GetOutputDerivatives(
-        In<u32>, usize, In<i32>, Out<f64>, usize);
     "ModelVariables (no structural parameters)": fmi3EnterConfigurationMode();
     "ModelVariables (no structural parameters)": fmi3ExitConfigurationMode();
     "hasEventMode": fmi3EnterEventMode();

@@ -2,12 +2,17 @@
 
 use std::ffi::CString;
 
-use sandgate::component::{Component, StepReport};
+use sandgate::component::{
+    Causality, Component, Error, Intermediate, StepReport, VariableTable, Wish,
+};
 use sandgate::fmi::{self, FmiVersion};
 use sandgate::scene::{self, Scene};
 
+use crate::access::Values;
 use crate::fault::{Fault, Status};
-use crate::guard::{Handle, SavedState, Text, embedded_scene, shield};
+use crate::guard::{
+    Door, Environment, Handle, IntermediateUpdate3, Pause, SavedState, Text, embedded_scene, shield,
+};
 use crate::log::{Category, Log, text};
 
 /// FMI 2's setupExperiment: importers may leave it out.
@@ -35,6 +40,93 @@ pub(crate) fn create(
     }
 }
 
+/// FMI 3: what the importer wants to know and do during steps.
+#[derive(Clone, Copy)]
+pub(crate) struct Updates {
+    pub(crate) callback: IntermediateUpdate3,
+    pub(crate) environment: Environment,
+    /// Whether it wants to set inputs.
+    pub(crate) sets_inputs: bool,
+    /// Whether a step may end early if it asks.
+    pub(crate) early_return_allowed: bool,
+}
+
+/// What the importer reaches while it is called from inside a step.
+pub(crate) struct Guest<'m, 'c> {
+    moment: &'m mut Intermediate<'c>,
+    log: &'m Log,
+    /// Whether an access broke down.
+    pub(crate) is_hurt: bool,
+}
+
+impl Guest<'_, '_> {
+    /// Passes the message of a refused access on.
+    pub(crate) fn report(&self, call: &str, fault: &Fault) {
+        self.log
+            .say(Category::Error, Status::Error, &format!("{call}: {fault}"));
+    }
+}
+
+impl Values for Guest<'_, '_> {
+    fn table(&self) -> &VariableTable {
+        self.moment.component().variables()
+    }
+
+    fn get(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
+        Ok(self.moment.get(references, values)?)
+    }
+
+    fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
+        Ok(self.moment.set(references, values)?)
+    }
+}
+
+impl Values for Instance {
+    fn table(&self) -> &VariableTable {
+        self.component.variables()
+    }
+
+    fn get(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
+        if self.component.is_unsettled() {
+            let table = self.component.variables();
+            let mut rows = references.iter().filter_map(|r| table.by_reference(*r));
+            if rows.any(|row| row.causality == Causality::Output) {
+                self.component.settle()?;
+            }
+        }
+        Ok(self.component.get(references, values)?)
+    }
+
+    fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
+        self.component.set(references, values)?;
+        for note in self.component.take_notes() {
+            self.log.say(Category::Warning, Status::Warning, &note);
+        }
+        Ok(())
+    }
+}
+
+impl Updates {
+    /// Calls the importer after an internal step.
+    fn tell(self, moment: &mut Intermediate<'_>, log: &Log, door: &Door<'_>) -> Wish {
+        let pause = Pause {
+            time: moment.time(),
+            set_requested: self.sets_inputs,
+            can_return_early: self.early_return_allowed,
+        };
+        let mut guest = Guest {
+            moment,
+            log,
+            is_hurt: false,
+        };
+        let wanted = door.open(&mut guest, || self.callback.call(self.environment, pause));
+        match wanted {
+            Some(time) if self.early_return_allowed => Wish::EndAt(time),
+            _ => Wish::GoOn,
+        }
+    }
+}
+
 /// What a handle points to.
 pub(crate) struct Instance {
     pub(crate) component: Component,
@@ -42,8 +134,8 @@ pub(crate) struct Instance {
     pub(crate) experiment: Experiment,
     /// Status of the last doStep, for fmi2GetStatus.
     pub(crate) last_step: Status,
-    /// Scratch for values on their way through the border.
-    pub(crate) values: Vec<f64>,
+    /// FMI 3: whom to call during steps.
+    pub(crate) updates: Option<Updates>,
     /// Message of the last refused or failed call, for sandgate_last_error.
     pub(crate) last_error: CString,
     /// Text of the variables with zero bytes behind it, for sandgate_variable_info.
@@ -63,7 +155,7 @@ impl Instance {
             log,
             experiment: Experiment::default(),
             last_step: Status::Ok,
-            values: Vec::new(),
+            updates: None,
             last_error: CString::default(),
             names: Vec::new(),
             threads: 1,
@@ -86,6 +178,22 @@ impl Instance {
         }
         instance.event(|| format!("instantiated scene {}", scene.name));
         Ok(instance)
+    }
+
+    /// FMI 3: whether inputs are among the variables that the importer wants to reach during steps.
+    pub(crate) fn sets_inputs(&self, required: &[u32]) -> Result<bool, Fault> {
+        let table = self.component.variables();
+        let mut inputs = false;
+        for reference in required {
+            let row = table.by_reference(*reference).ok_or_else(|| {
+                Fault::border(format!(
+                    "requiredIntermediateVariables: found value reference {reference}, allowed 0 to {}",
+                    table.rows().len() - 1
+                ))
+            })?;
+            inputs |= row.causality == Causality::Input;
+        }
+        Ok(inputs)
     }
 
     /// How an earlier call broke down, if one did.
@@ -113,8 +221,37 @@ impl Instance {
 
     /// One communication step.
     pub(crate) fn step(&mut self, t: f64, h: f64) -> Result<StepReport, Fault> {
+        self.step_with(t, h, Component::do_step)
+    }
+
+    /// One communication step with the importer's intermediate updates, if it wants any.
+    pub(crate) fn step_with_updates(
+        &mut self,
+        t: f64,
+        h: f64,
+        door: &Door<'_>,
+    ) -> Result<StepReport, Fault> {
+        let Some(updates) = self.updates else {
+            return self.step(t, h);
+        };
+        let log = self.log.clone();
+        let report = self.step_with(t, h, |component, t, h| {
+            component.do_step_watched(t, h, &mut |moment| updates.tell(moment, &log, door))
+        });
+        for note in self.component.take_notes() {
+            self.log.say(Category::Warning, Status::Warning, &note);
+        }
+        report
+    }
+
+    fn step_with(
+        &mut self,
+        t: f64,
+        h: f64,
+        step: impl FnOnce(&mut Component, f64, f64) -> Result<StepReport, Error>,
+    ) -> Result<StepReport, Fault> {
         self.last_step = Status::Error;
-        let report = self.component.do_step(t, h)?;
+        let report = step(&mut self.component, t, h)?;
         self.last_step = Status::Ok;
         self.event(|| {
             format!(
@@ -179,7 +316,7 @@ impl Instance {
 
     /// Bytes as a state, if this instance could go to it: a bad blob is refused here, not when it is set.
     pub(crate) fn deserialize(&self, bytes: &[u8]) -> Result<SavedState, Fault> {
-        self.fresh()?.restore(bytes)?;
+        self.component.check_saved(bytes)?;
         Ok(SavedState {
             bytes: bytes.to_vec(),
             experiment: None,
@@ -206,7 +343,7 @@ impl Instance {
     }
 
     fn fresh(&self) -> Result<Component, Fault> {
-        let mut fresh = Component::new(self.component.scene())?;
+        let mut fresh = Component::new(self.component.base_scene())?;
         fresh.set_threads(self.threads);
         Ok(fresh)
     }

@@ -12,8 +12,10 @@ use crate::guard::{Callbacks2, Environment, Logger3, PlainLogger};
 pub(crate) enum Category {
     /// Refused and failed calls.
     Error = 0,
+    /// What was taken, but not as it was asked for.
+    Warning = 1,
     /// What happens.
-    Event = 1,
+    Event = 2,
 }
 
 /// Whom to tell.

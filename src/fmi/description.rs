@@ -97,7 +97,12 @@ pub(super) fn write_units(xml: &mut Xml, table: &VariableTable) {
     for (name, (base, display)) in units {
         xml.begin("Unit", &vec![("name", name.to_owned())]);
         if let Some(base) = base {
-            let powers = [("kg", base.kg), ("m", base.m), ("s", base.s)];
+            let powers = [
+                ("kg", base.kg),
+                ("m", base.m),
+                ("s", base.s),
+                ("rad", base.rad),
+            ];
             let powers = powers.into_iter().filter(|(_, power)| *power != 0);
             xml.leaf(
                 "BaseUnit",

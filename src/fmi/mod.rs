@@ -5,6 +5,7 @@
 //! (`reference`); `library` finds (or builds) that shared library, `cross` builds it for other machines. The C interface itself is the package in `fmu/`; no
 //! function pointer and no C type is known here.
 
+pub mod capabilities;
 pub mod cross;
 mod description;
 mod error;
@@ -48,10 +49,14 @@ impl FmiVersion {
 }
 
 /// Categories of log messages and what they hold; the only list.
-pub const LOG_CATEGORIES: [(&str, &str); 2] = [
+pub const LOG_CATEGORIES: [(&str, &str); 3] = [
     (
         "logStatusError",
         "Calls that were refused or failed: what was found, what is allowed, what to do.",
+    ),
+    (
+        "logStatusWarning",
+        "Inputs that were clamped to their range because saturate_inputs is true.",
     ),
     (
         "logEvents",

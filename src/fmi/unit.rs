@@ -1,15 +1,16 @@
-//! Units as FMI wants them: each unit of the table in powers of kg, m and s, with the display units that go with it.
+//! Units as FMI wants them: each unit of the table in powers of kg, m, s and rad, with the display units that go with it.
 
 use std::collections::BTreeMap;
 
 use crate::component::VariableTable;
 
-/// A coherent SI unit: kg^a m^b s^c.
+/// A coherent SI unit: kg^a m^b s^c rad^d.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct BaseUnit {
     pub(super) kg: i32,
     pub(super) m: i32,
     pub(super) s: i32,
+    pub(super) rad: i32,
 }
 
 /// Units of a table by name: powers (if the name is understood) and display units with their factors.
@@ -51,20 +52,22 @@ fn base_unit(name: &str) -> Option<BaseUnit> {
                 } else {
                     exponent.parse().ok()?
                 };
-            let (kg, m, s) = match symbol {
-                "1" | "rad" => (0, 0, 0),
-                "kg" => (1, 0, 0),
-                "m" => (0, 1, 0),
-                "s" => (0, 0, 1),
-                "N" => (1, 1, -2),
-                "Pa" => (1, -1, -2),
-                "J" => (1, 2, -2),
-                "W" => (1, 2, -3),
+            let (kg, m, s, rad) = match symbol {
+                "1" => (0, 0, 0, 0),
+                "rad" => (0, 0, 0, 1),
+                "kg" => (1, 0, 0, 0),
+                "m" => (0, 1, 0, 0),
+                "s" => (0, 0, 1, 0),
+                "N" => (1, 1, -2, 0),
+                "Pa" => (1, -1, -2, 0),
+                "J" => (1, 2, -2, 0),
+                "W" => (1, 2, -3, 0),
                 _ => return None,
             };
             sum.kg += power * kg;
             sum.m += power * m;
             sum.s += power * s;
+            sum.rad += power * rad;
         }
     }
     Some(sum)
@@ -76,7 +79,10 @@ mod tests {
 
     #[test]
     fn units_are_powers_of_kg_m_and_s() {
-        let unit = |kg, m, s| Some(BaseUnit { kg, m, s });
+        let unit = |kg, m, s| {
+            let rad = 0;
+            Some(BaseUnit { kg, m, s, rad })
+        };
         assert_eq!(base_unit("1"), unit(0, 0, 0));
         assert_eq!(base_unit("m"), unit(0, 1, 0));
         assert_eq!(base_unit("kg/s"), unit(1, 0, -1));
@@ -85,6 +91,11 @@ mod tests {
         assert_eq!(base_unit("N.m"), unit(1, 2, -2));
         assert_eq!(base_unit("Pa.s"), unit(1, -1, -1));
         assert_eq!(base_unit("m-1"), unit(0, -1, 0));
+        let rad = BaseUnit {
+            rad: 1,
+            ..BaseUnit::default()
+        };
+        assert_eq!(base_unit("rad"), Some(rad));
         assert_eq!(base_unit("furlong"), None);
     }
 }

@@ -1,11 +1,11 @@
 //! The FMI 2.0 document: scalars only, model structure by place in the list.
 
-use super::FmiVersion;
 use super::description::{
     Enumeration, VALIDITY, enumeration, head, identifier, is_initial_unknown, is_output,
     variable_head, variable_value, write_experiment, write_log_categories, write_units,
 };
 use super::xml::{Attributes, Xml};
+use super::{FmiVersion, capabilities};
 use crate::component::{Causality, ValueKind, Variable, VariableTable};
 use crate::scene::Scene;
 
@@ -36,7 +36,7 @@ pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: 
         "fmiModelDescription",
         &head(scene, FmiVersion::V2, ("guid", token)),
     );
-    xml.leaf("CoSimulation", &capabilities(scene));
+    xml.leaf("CoSimulation", &co_simulation(scene));
     write_units(xml, table);
     if rows.iter().any(|row| enumeration(row).is_some()) {
         xml.begin("TypeDefinitions", &vec![]);
@@ -62,16 +62,10 @@ pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: 
     xml.end();
 }
 
-fn capabilities(scene: &Scene) -> Attributes {
-    let yes = || "true".to_owned();
-    vec![
-        ("modelIdentifier", identifier(scene)),
-        ("canHandleVariableCommunicationStepSize", yes()),
-        ("canInterpolateInputs", yes()),
-        ("canNotUseMemoryManagementFunctions", yes()),
-        ("canGetAndSetFMUstate", yes()),
-        ("canSerializeFMUstate", yes()),
-    ]
+fn co_simulation(scene: &Scene) -> Attributes {
+    let mut all = vec![("modelIdentifier", identifier(scene))];
+    all.extend(capabilities::attributes(FmiVersion::V2));
+    all
 }
 
 fn write_type(xml: &mut Xml, enumeration: &Enumeration) {

@@ -1,12 +1,12 @@
 //! The FMI 3.0 document: arrays and their scalar elements, model structure by value reference.
 
-use super::FmiVersion;
 use super::description::{
     Enumeration, VALIDITY, enumeration, head, identifier, is_initial_unknown, is_output,
     variable_head, variable_value, write_experiment, write_log_categories, write_units,
 };
 use super::xml::{Attributes, Xml};
-use crate::component::{ValueKind, Variable, VariableTable};
+use super::{FmiVersion, capabilities};
+use crate::component::{Causality, ValueKind, Variability, Variable, VariableTable};
 use crate::scene::Scene;
 
 pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: &str) {
@@ -14,7 +14,7 @@ pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: 
         "fmiModelDescription",
         &head(scene, FmiVersion::V3, ("instantiationToken", token)),
     );
-    xml.leaf("CoSimulation", &capabilities(scene));
+    xml.leaf("CoSimulation", &co_simulation(scene));
     write_units(xml, table);
     if table.rows().iter().any(|row| enumeration(row).is_some()) {
         xml.begin("TypeDefinitions", &vec![]);
@@ -32,14 +32,10 @@ pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: 
     xml.end();
 }
 
-fn capabilities(scene: &Scene) -> Attributes {
-    let yes = || "true".to_owned();
-    vec![
-        ("modelIdentifier", identifier(scene)),
-        ("canGetAndSetFMUState", yes()),
-        ("canSerializeFMUState", yes()),
-        ("canHandleVariableCommunicationStepSize", yes()),
-    ]
+fn co_simulation(scene: &Scene) -> Attributes {
+    let mut all = vec![("modelIdentifier", identifier(scene))];
+    all.extend(capabilities::attributes(FmiVersion::V3));
+    all
 }
 
 fn write_type(xml: &mut Xml, enumeration: &Enumeration) {
@@ -71,6 +67,11 @@ fn write_variable(xml: &mut Xml, row: &Variable) {
         ValueKind::Boolean => "Boolean",
     };
     let mut attributes = variable_head(row);
+    // What may be read or set while a step is running.
+    let continuous = row.variability == Variability::Continuous;
+    if continuous && matches!(row.causality, Causality::Input | Causality::Output) {
+        attributes.push(("intermediateUpdate", "true".to_owned()));
+    }
     attributes.extend(variable_value(row));
     if row.shape.is_empty() {
         xml.leaf(element, &attributes);

@@ -14,11 +14,11 @@ mod bus;
 mod cli;
 mod component;
 mod contract;
-mod fmi_page;
 #[cfg(feature = "cli")]
 mod cross;
 #[cfg(feature = "cli")]
 mod drivers;
+mod fmi_page;
 #[cfg(feature = "cli")]
 mod fmu;
 mod gauges;

@@ -238,9 +238,13 @@ fn spell(kind: &str) -> String {
         return inner(inside).map_or("p(o)".to_owned(), |i| format!("p({i})"));
     }
     let spelled = match kind {
-        "Handle" | "StateHandle" | "Environment" | "Logger3" | "PlainLogger" | "UnusedCallback" => {
-            "p(o)"
-        }
+        "Handle"
+        | "StateHandle"
+        | "Environment"
+        | "Logger3"
+        | "PlainLogger"
+        | "IntermediateUpdate3"
+        | "UnusedCallback" => "p(o)",
         "StateSlot" => "p(p(o))",
         "Text" | "*const c_char" | "*const u8" => "pc(i1)",
         "Callbacks2" | "CVariable" | "CStepReport" | "CLedger" => "o",
@@ -291,6 +295,26 @@ fn the_header_is_clean_c99_and_cpp17() {
                 .arg(&file),
             COMPILER,
         );
+    }
+}
+
+#[test]
+fn the_cost_of_the_interface_can_be_measured() {
+    let link = link();
+    let link: Vec<&str> = link.iter().map(String::as_str).collect();
+    let program = compiled("tests/c/cost.c", &scratch("cost"), &link);
+    let output = run(
+        "tests/c/cost.c",
+        Command::new(&program).args([silo(), silo()]).arg("1"),
+        "the program says what went wrong",
+    );
+    let text = String::from_utf8_lossy(&output.stdout);
+    for part in [
+        "all gauges by one call",
+        "a step of a sleeping scene",
+        "save",
+    ] {
+        assert!(text.contains(part), "{text}");
     }
 }
 

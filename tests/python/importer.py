@@ -3,6 +3,7 @@
 import ctypes
 import shutil
 import struct
+import threading
 
 import fmpy
 from fmpy import fmi2, fmi3
@@ -22,6 +23,7 @@ class Fmu:
         self.variables = {v.name: v for v in self.description.modelVariables}
         self.folder = fmpy.extract(path)
         self.messages = []
+        self.logging_threads = set()
         arguments = dict(
             guid=self.description.guid if self.version == 2 else self.description.instantiationToken,
             unzipDirectory=self.folder,
@@ -40,9 +42,11 @@ class Fmu:
 
     def log2(self, environment, name, status, category, message, *_):
         assert environment == 4711 and name == b"instance"
+        self.logging_threads.add(threading.get_native_id())
         self.messages.append((status, category.decode(), message.decode()))
 
     def log3(self, environment, status, category, message):
+        self.logging_threads.add(threading.get_native_id())
         self.messages.append((status, category.decode(), message.decode()))
 
     def initialize(self, stop=None, **start_values):

@@ -3,10 +3,13 @@
 Run by tests/it/fmu.rs, which packs the FMUs first.
 """
 
+import ctypes
 import math
 import os
+import struct
 import subprocess
 import sys
+import threading
 import zipfile
 
 import pytest
@@ -270,19 +273,150 @@ def test_nothing_is_logged_when_logging_is_off(version):
 
 @both
 def test_the_library_leaves_the_process_as_it_was(version):
-    """No thread outlives the instance; directory, locale and environment stay."""
+    """No thread outlives the instance; directory, locale, environment, signals and floating-point mode stay."""
 
     def surroundings():
         import locale
         with open("/proc/self/status") as file:
-            threads = [line for line in file if line.startswith("Threads")]
-        return threads, os.getcwd(), locale.setlocale(locale.LC_ALL), dict(os.environ)
+            kept = ("Threads", "SigBlk", "SigIgn", "SigCgt")
+            threads = [line for line in file if line.startswith(kept)]
+        # fenv_t of glibc on x86-64: control word of the x87 first, MXCSR last; its six flags of past exceptions may change.
+        fenv = ctypes.create_string_buffer(32)
+        assert ctypes.CDLL(None).fegetenv(fenv) == 0
+        control, mxcsr = struct.unpack_from("<H", fenv, 0)[0], struct.unpack_from("<I", fenv, 28)[0]
+        return threads, control, mxcsr & ~0x3F, os.getcwd(), locale.setlocale(locale.LC_ALL), dict(os.environ)
 
     before = surroundings()
     fmu = Fmu(FMUS[version]).initialize(solver__threads=3)
     run(fmu, last=2)
     fmu.free()
     assert surroundings() == before
+
+
+@both
+def test_clamped_inputs_are_reported(version):
+    fmu = Fmu(FMUS[version]).initialize()
+    gate = "gate.sluice.opening"
+    fmu.set(gate, 1.0 + 1e-10)
+    assert fmu.get([gate]) == [1.0] and not any(category == "logStatusWarning" for _, category, _ in fmu.messages)
+    fmu.set("saturate_inputs", True)
+    fmu.messages.clear()
+    fmu.set(gate, -2.5)
+    assert fmu.get([gate]) == [0.0]
+    [(status, category, message)] = fmu.messages
+    assert (status, category) == (1, "logStatusWarning")
+    for text in (gate, "found -2.5", "clamped to 0"):
+        assert text in message
+    refused(fmu, lambda: fmu.set(gate, math.nan), gate, "found NaN")
+    fmu.free()
+
+
+@both
+def test_the_logger_is_called_from_the_calling_thread(version):
+    fmu = Fmu(FMUS[version]).initialize(solver__threads=2)
+    run(fmu, last=2)
+    with pytest.raises(FMICallException):
+        fmu.step(99.0, H)
+    assert fmu.logging_threads == {threading.get_native_id()}
+    fmu.free()
+
+
+class Raw:
+    """Instances without FMPy between: any resource location, no logger."""
+
+    def __init__(self, version):
+        self.made = Fmu(FMUS[version])
+        self.version = version
+        self.lib = ctypes.CDLL(self.made.fmu.dll._name)
+        self.instantiate = self.lib.fmi2Instantiate if version == 2 else self.lib.fmi3InstantiateCoSimulation
+        self.instantiate.restype = ctypes.c_void_p
+        description = self.made.description
+        self.token = (description.guid if version == 2 else description.instantiationToken).encode()
+
+    def instance(self, location=None):
+        if self.version == 2:
+            callbacks = fmpy.fmi2.fmi2CallbackFunctions()
+            made = self.instantiate(b"raw", 1, self.token, location, ctypes.byref(callbacks), 0, 1)
+        else:
+            no = ctypes.c_bool(False)
+            yes = ctypes.c_bool(True)
+            made = self.instantiate(b"raw", self.token, location, no, yes, no, no, None, ctypes.c_size_t(0), None, None, None)
+        assert made
+        return ctypes.c_void_p(made)
+
+    def call(self, name, *arguments):
+        status = getattr(self.lib, f"fmi{self.version}{name}")(*arguments)
+        assert status == 0, (name, status)
+
+    def free(self, instance):
+        getattr(self.lib, f"fmi{self.version}FreeInstance")(instance)
+
+
+@both
+def test_any_resource_location_will_do(version):
+    """And a NULL logger with logging on does no harm."""
+    raw = Raw(version)
+    double, size = ctypes.c_double, ctypes.c_size_t
+    locations = [None, b"", b"/nowhere", b"/with space/", b"file:/x", b"file:///x", b"file:///x/", b"file://localhost/x",
+                 b"file:///with%20space/%C3%BC", "file:///ü".encode(), "/ü/".encode(), b"C:\\x", b"%%%"]
+    for location in locations:
+        instance = raw.instance(location)
+        if version == 2:
+            raw.call("EnterInitializationMode", instance)
+        else:
+            raw.call("EnterInitializationMode", instance, False, double(0.0), double(0.0), False, double(0.0))
+        raw.call("ExitInitializationMode", instance)
+        # Refused, with nobody to tell.
+        getattr(raw.lib, f"fmi{version}DoStep")(instance, double(5.0), double(H), 1, None, None, None, None)
+        raw.free(instance)
+    raw.made.free()
+
+
+def open_things():
+    return len(os.listdir("/proc/self/task")), len(os.listdir("/proc/self/fd"))
+
+
+@both
+def test_a_thousand_instances_leave_nothing_behind(version):
+    raw = Raw(version)
+    threads = raw.made.variables["solver.threads"].valueReference
+    kind = (ctypes.c_int32, "SetInteger") if version == 2 else (ctypes.c_int64, "SetInt64")
+    reference, two, one = (ctypes.c_uint32 * 1)(threads), (kind[0] * 1)(2), ctypes.c_size_t(1)
+    before = open_things()
+    for k in range(1000):
+        instance = raw.instance()
+        if k % 10 == 0:
+            raw.call(kind[1], instance, reference, one, two, *([] if version == 2 else [one]))
+        raw.free(instance)
+    assert open_things() == before
+    raw.made.free()
+
+
+@both
+def test_a_thousand_states_leave_no_memory_behind(version):
+    """With 16 times the particles, so that a state is large beside what allocators keep."""
+
+    def resident():
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    fmu = Fmu(FMUS[version], logging=False)
+    fmu.initialize(solver__resolution_scale=4.0)
+    fmu.step(0.0, H)
+    size = len(fmu.save())
+    assert size > 150_000
+
+    def cycle(count):
+        for _ in range(count):
+            state = fmu.get_state()
+            fmu.set_state(state)
+            fmu.free_state(state)
+
+    cycle(50)
+    before = resident()
+    cycle(1000)
+    assert resident() - before < size
+    fmu.free()
 
 
 if __name__ == "__main__" and sys.argv[1:2] == ["continue"]:

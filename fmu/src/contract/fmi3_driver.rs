@@ -9,7 +9,7 @@ use sandgate::fmi::FmiVersion;
 use sandgate::scene::Scene;
 
 use super::suite::{Driver, Outcome, Refusal};
-use super::{Messages, groups, note, outcome, pack};
+use super::{Messages, Update, groups, note, outcome, pack};
 
 type Logger = extern "C" fn(*mut c_void, i32, *const c_char, *const c_char);
 
@@ -26,7 +26,7 @@ unsafe extern "C" {
         count: usize,
         environment: *mut c_void,
         logger: Logger,
-        update: *const c_void,
+        update: Option<Update>,
     ) -> *mut c_void;
     fn fmi3FreeInstance(c: *mut c_void);
     fn fmi3EnterInitializationMode(
@@ -107,7 +107,7 @@ impl Fmi3 {
                 0,
                 environment,
                 logger,
-                ptr::null(),
+                None,
             )
         };
         assert!(!instance.is_null(), "{messages:?}");
@@ -301,7 +301,7 @@ fn a_wrong_token_kind_or_event_mode_is_refused_with_a_message() {
             0,
             environment,
             logger,
-            ptr::null(),
+            None,
         )
     };
     for (token, events, expected) in [

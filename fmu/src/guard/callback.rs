@@ -1,4 +1,5 @@
-//! The importer's functions. Only the logger is ever called, only during a call, with its own environment pointer.
+//! The importer's functions: logger and intermediate update. Called only during a call, from the thread of that call, with
+//! the importer's own environment pointer.
 
 use std::ffi::{CStr, c_char, c_void};
 
@@ -95,6 +96,53 @@ impl Logger3 {
             // call.
             unsafe { logger(environment, status, category.as_ptr(), message.as_ptr()) }
         }
+    }
+}
+
+/// What an intermediate update tells the importer.
+#[derive(Clone, Copy)]
+pub(crate) struct Pause {
+    /// Time reached [s].
+    pub(crate) time: f64,
+    /// Whether inputs may be set for the rest of the step.
+    pub(crate) set_requested: bool,
+    /// Whether the importer may ask for an early return.
+    pub(crate) can_return_early: bool,
+}
+
+/// `fmi3IntermediateUpdateCallback`.
+#[derive(Clone, Copy)]
+#[repr(transparent)]
+pub(crate) struct IntermediateUpdate3(
+    Option<unsafe extern "C" fn(Environment, f64, bool, bool, bool, bool, *mut bool, *mut f64)>,
+);
+
+impl IntermediateUpdate3 {
+    /// Whether the importer gave a function.
+    pub(crate) fn is_given(self) -> bool {
+        self.0.is_some()
+    }
+
+    /// Calls the importer; the time at which it wants to return early [s], if it does.
+    pub(crate) fn call(self, environment: Environment, pause: Pause) -> Option<f64> {
+        // Bytes, not bools: what C writes there may be no bool.
+        let (mut requested, mut time) = (0_u8, pause.time);
+        let update = self.0?;
+        // SAFETY: the importer gave this function for this use; both places live until it returns. Reading is allowed
+        // (third flag), the internal step is accepted (fourth).
+        unsafe {
+            update(
+                environment,
+                pause.time,
+                pause.set_requested,
+                true,
+                true,
+                pause.can_return_early,
+                (&raw mut requested).cast(),
+                &raw mut time,
+            );
+        }
+        (requested != 0).then_some(time)
     }
 }
 

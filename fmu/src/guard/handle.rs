@@ -1,18 +1,70 @@
 //! Instances behind the pointer that callers hold, and the wall that panics and second calls run into.
 
 use std::any::Any;
-use std::cell::UnsafeCell;
+use std::cell::{Cell, UnsafeCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 
+use crate::access::Values;
 use crate::fault::{Fault, Status};
-use crate::instance::Instance;
+use crate::instance::{Guest, Instance};
 
-/// An instance and whether a call on it is running.
+/// No call is running.
+const FREE: u8 = 0;
+/// A call is running.
+const BUSY: u8 = 1;
+/// A step is running and has called the importer, who may read and set variables.
+const OPEN: u8 = 2;
+/// It is doing so.
+const VISITED: u8 = 3;
+
+/// An instance, which call on it is running, and who may be visited while one is.
 pub(crate) struct Slot {
-    busy: AtomicBool,
+    door: AtomicU8,
     instance: UnsafeCell<Instance>,
+    /// A [`Guest`] while the door is OPEN or VISITED, else NULL.
+    guest: Cell<*mut Guest<'static, 'static>>,
+}
+
+/// Lets the importer in while a step is running.
+pub(crate) struct Door<'s>(&'s Slot);
+
+impl Door<'_> {
+    /// Calls the importer, who may read and set variables through the instance's pointer until `outside` returns.
+    pub(crate) fn open<T>(&self, guest: &mut Guest<'_, '_>, outside: impl FnOnce() -> T) -> T {
+        let slot = self.0;
+        slot.guest.set(ptr::from_mut(guest).cast());
+        slot.door.store(OPEN, Ordering::Release);
+        let result = outside();
+        while slot.close().is_err() {
+            // A visit from another thread, which no standard allows, is over soon.
+            std::hint::spin_loop();
+        }
+        slot.guest.set(ptr::null_mut());
+        assert!(!guest.is_hurt, "an intermediate access broke down");
+        result
+    }
+}
+
+impl Slot {
+    fn close(&self) -> Result<u8, u8> {
+        let (acquire, relaxed) = (Ordering::Acquire, Ordering::Relaxed);
+        self.door.compare_exchange(OPEN, BUSY, acquire, relaxed)
+    }
+
+    /// The guest, if the door is open and nobody else is with it; `None` otherwise.
+    fn with_guest<T>(&self, work: impl FnOnce(&mut Guest<'_, '_>) -> T) -> Option<T> {
+        let (acquire, relaxed) = (Ordering::Acquire, Ordering::Relaxed);
+        self.door
+            .compare_exchange(OPEN, VISITED, acquire, relaxed)
+            .ok()?;
+        // SAFETY: the door was OPEN, so `Door::open` has put a pointer to a living guest here and uses neither it nor
+        // the pointer until the door is OPEN again; VISITED makes this the only reference.
+        let result = unsafe { self.guest.get().as_mut() }.map(work);
+        self.door.store(OPEN, Ordering::Release);
+        result
+    }
 }
 
 /// What a call asks of an instance.
@@ -32,8 +84,9 @@ impl Handle {
     /// Hands an instance to the caller.
     pub(crate) fn new(instance: Instance) -> Self {
         Self(Box::into_raw(Box::new(Slot {
-            busy: AtomicBool::new(false),
+            door: AtomicU8::new(FREE),
             instance: UnsafeCell::new(instance),
+            guest: Cell::new(ptr::null_mut()),
         })))
     }
 
@@ -49,20 +102,60 @@ impl Handle {
         need: Need,
         work: impl FnOnce(&mut Instance) -> Result<T, Fault>,
     ) -> Result<T, Fault> {
-        // SAFETY: the caller promises NULL or a pointer from `new` that it has not freed.
-        let Some(slot) = (unsafe { self.0.as_ref() }) else {
-            return Err(Fault::border(format!("{call}: the instance is NULL")));
-        };
-        if slot.busy.swap(true, Ordering::Acquire) {
-            return Err(Fault::border(format!(
-                "{call}: another call on this instance is running"
-            )));
+        self.call_with_door(call, need, |instance, _| work(instance))
+    }
+
+    /// As [`Handle::call`], for a step, which may open the door to the importer.
+    pub(crate) fn call_with_door<T>(
+        &self,
+        call: &str,
+        need: Need,
+        work: impl FnOnce(&mut Instance, &Door<'_>) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
+        let slot = self.slot(call)?;
+        let (acquire, relaxed) = (Ordering::Acquire, Ordering::Relaxed);
+        let entered = slot.door.compare_exchange(FREE, BUSY, acquire, relaxed);
+        if entered.is_err() {
+            let fault = Fault::border(
+                "another call on this instance is running; an intermediate update may get and set variables only",
+            );
+            slot.with_guest(|guest| guest.report(call, &fault));
+            return Err(fault);
         }
-        // SAFETY: `busy` was false and is true now, so this is the only reference into the cell until it is false.
+        // SAFETY: the door was FREE and is BUSY now, so this is the only reference into the cell until it is FREE.
         let instance = unsafe { &mut *slot.instance.get() };
-        let result = guarded(instance, call, need, work);
-        slot.busy.store(false, Ordering::Release);
+        let result = guarded(instance, call, need, |instance| work(instance, &Door(slot)));
+        slot.door.store(FREE, Ordering::Release);
         result
+    }
+
+    /// Runs one call that gets or sets variables: between other calls, or while a step has the door open.
+    pub(crate) fn visit<T>(
+        &self,
+        call: &str,
+        work: impl FnOnce(&mut dyn Values) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
+        let slot = self.slot(call)?;
+        if slot.door.load(Ordering::Acquire) != OPEN {
+            return self.call(call, Need::Sound, |instance| work(instance));
+        }
+        let visited = slot.with_guest(|guest| {
+            let result = shield(|| work(guest)).unwrap_or_else(|how| {
+                guest.is_hurt = true;
+                Err(Fault::Broken(format!("broke down ({how})")))
+            });
+            if let Err(fault) = &result {
+                guest.report(call, fault);
+            }
+            result
+        });
+        visited.unwrap_or_else(|| Err(Fault::border("another call on this instance is running")))
+    }
+
+    fn slot(&self, call: &str) -> Result<&Slot, Fault> {
+        // SAFETY: the caller promises NULL or a pointer from `new` that it has not freed.
+        unsafe { self.0.as_ref() }
+            .ok_or_else(|| Fault::border(format!("{call}: the instance is NULL")))
     }
 
     /// Answers a call that a capability flag says is not there.
@@ -77,11 +170,12 @@ impl Handle {
 
     /// Frees the instance. NULL is fine. An instance with a running call is left alone: freeing it would be worse.
     pub(crate) fn free(self) {
-        // SAFETY: as in `call`.
-        let Some(slot) = (unsafe { self.0.as_ref() }) else {
+        let Ok(slot) = self.slot("free") else {
             return;
         };
-        if !slot.busy.swap(true, Ordering::Acquire) {
+        let (acquire, relaxed) = (Ordering::Acquire, Ordering::Relaxed);
+        let entered = slot.door.compare_exchange(FREE, BUSY, acquire, relaxed);
+        if entered.is_ok() {
             // SAFETY: `new` made it with Box::into_raw, and the caller promises not to use the pointer again.
             let slot = unsafe { Box::from_raw(self.0) };
             let _ = shield(move || drop(slot));

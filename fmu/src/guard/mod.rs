@@ -14,11 +14,13 @@ mod records;
 mod state;
 
 pub(crate) use border::{In, Out, Plain, Text};
-pub(crate) use callback::{Callbacks2, Environment, Logger3, PlainLogger, UnusedCallback};
+pub(crate) use callback::{
+    Callbacks2, Environment, IntermediateUpdate3, Logger3, Pause, PlainLogger, UnusedCallback,
+};
 pub(crate) use embedded::embedded_scene;
 #[cfg(test)]
 pub(crate) use embedded::packed;
-pub(crate) use handle::{Handle, Need, shield};
+pub(crate) use handle::{Door, Handle, Need, shield};
 pub(crate) use records::{CLedger, CStepReport, CVariable};
 pub(crate) use state::{SavedState, StateHandle, StateSlot};
 
