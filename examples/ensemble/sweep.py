@@ -10,14 +10,15 @@ at, a member that fails is tried again from its last state, and the script goes 
 The states are exact: results have the same bits on one worker, on many, and after any number of restarts (`--serial`
 computes them here without slices, to compare).
 
-Workers need fmpy and nothing else: the FMUs (one for each friction angle and fill level, as these belong to the
-scene) are sent to them. Writes OUT/results.parquet (a row a member and step) and OUT/outflow.svg.
+Workers need fmpy and nothing else: the FMUs (one for each fill level, which belongs to the scene; the friction angle is a
+parameter, the schedule an input) are sent to them. Writes OUT/results.parquet (a row a member and step) and OUT/outflow.svg.
 """
 
 import argparse
 import base64
 import itertools
 import json
+import math
 import os
 import shutil
 import string
@@ -35,7 +36,7 @@ STEP = 1.0 / 128.0
 STEPS = 24
 SLICE = 6
 TRIES = 3
-FRICTION = ["20 deg", "24 deg", "28 deg", "32 deg"]
+FRICTION = [20.0, 24.0, 28.0, 32.0]  # [deg]
 FILL = ["5 cm", "8 cm"]
 # Opening of the gate over time: (time [s], opening), straight in between.
 SCHEDULES = {
@@ -51,13 +52,13 @@ def members():
     """Every member: its number, what is swept, and the FMU that it takes."""
     sweep = itertools.product(FRICTION, FILL, SCHEDULES)
     return [
-        dict(member=number, friction=friction, fill=fill, schedule=schedule, fmu=archive(friction, fill))
+        dict(member=number, friction=friction, fill=fill, schedule=schedule, fmu=archive(fill))
         for number, (friction, fill, schedule) in enumerate(sweep)
     ]
 
 
-def archive(friction, fill):
-    return f"silo_{friction}_{fill}.fmu".replace(" ", "")
+def archive(fill):
+    return f"silo_{fill}.fmu".replace(" ", "")
 
 
 def opening(schedule, t):
@@ -74,11 +75,11 @@ def pack(sandgate, library, folder):
     folder.mkdir(parents=True, exist_ok=True)
     template = string.Template(Path(__file__).with_name("silo.toml.in").read_text())
     files = {}
-    for friction, fill in itertools.product(FRICTION, FILL):
-        path = folder / archive(friction, fill)
+    for fill in FILL:
+        path = folder / archive(fill)
         if not path.exists():
             scene = path.with_suffix(".toml")
-            scene.write_text(template.substitute(friction=friction, fill=fill))
+            scene.write_text(template.substitute(fill=fill))
             extra = ["--library", library] if library else []
             command = [sandgate, "fmu", scene, "--fmi", "3", "--reference", "0", "-o", path, *extra]
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
@@ -111,15 +112,17 @@ def advance(ready, member, first, last, state):
     told = []
     fmu.instantiate(loggingOn=True, logMessage=lambda _, status, category, message: told.append(message.decode()))
     try:
+        references = {v.name: v.valueReference for v in description.modelVariables}
         if state is None:
             fmu.enterInitializationMode(startTime=0.0)
+            angle = math.radians(member["friction"])
+            fmu.setFloat64([references["material.grains.friction_angle"]], [angle])
             fmu.exitInitializationMode()
         else:
-            # A state goes into an instance that was only instantiated, in any process.
+            # A state goes into an instance that was only instantiated, in any process; it holds the parameters too.
             saved = fmu.deserializeFMUState(state)
             fmu.setFMUState(saved)
             fmu.freeFMUState(saved)
-        references = {v.name: v.valueReference for v in description.modelVariables}
         rows = []
         for k in range(first, last):
             t = k * STEP
