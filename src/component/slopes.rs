@@ -55,7 +55,7 @@ impl Component {
             Some(source) if self.is_mean(*source) => 0.0,
             _ => last,
         };
-        if !(span > 0.0) || !self.was_valid(row) {
+        if span <= 0.0 || !self.was_valid(row) {
             values.fill(0.0);
             return;
         }

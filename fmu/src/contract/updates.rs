@@ -287,7 +287,7 @@ fn a_step_ends_early_only_if_allowed_and_then_exactly_there() {
     assert!(at_once.world.seen[0].flags[3]);
     // Going on from there is allowed.
     at_once.world.plan.end_at = None;
-    assert_eq!(at_once.step(first, h - first).0, false);
+    assert!(!at_once.step(first, h - first).0);
 
     // At a time inside, met to the bit, as a step of that length.
     let inside = 0.7 * h;
