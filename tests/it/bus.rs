@@ -188,7 +188,7 @@ fn ten_bad_messages_are_refused_and_the_component_goes_on_unharmed() {
             "set",
             r#"{"req":"b6","inputs":{"gate.main.open":1}}"#,
             "unknown_variable",
-            "unknown variable \"gate.main.open\"; there are solver.threads, gate.main.opening",
+            "unknown variable \"gate.main.open\"; there are solver.threads, saturate_inputs, solver.resolution_scale",
         ),
         (
             "set",
