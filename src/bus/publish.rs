@@ -10,6 +10,7 @@ use crate::wire::foxglove::{FrameTransform, Log, LogLevel, PointCloud, SceneUpda
 use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Command, Gauge, StepStats};
 use crate::wire::picture::scene_update;
 use crate::wire::{Described, Observer, keys, schema};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::SyncSender;
@@ -23,7 +24,7 @@ pub(super) const WAITING_BATCHES: usize = 256;
 pub(super) struct Publication {
     pub(super) key: Arc<str>,
     /// Name of the protobuf message: `sandgate.Gauge`.
-    pub(super) schema: &'static str,
+    pub(super) schema: Cow<'static, str>,
     pub(super) bytes: Arc<Vec<u8>>,
 }
 
@@ -150,7 +151,7 @@ pub(super) fn schemas() -> Vec<(&'static str, Vec<u8>)> {
 fn publication<M: prost::Message + Described>(key: Arc<str>, message: &M) -> Publication {
     Publication {
         key,
-        schema: M::FULL_NAME,
+        schema: M::FULL_NAME.into(),
         bytes: Arc::new(message.encode_to_vec()),
     }
 }

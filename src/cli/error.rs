@@ -7,7 +7,7 @@ use crate::bench;
 use crate::bus::BusError;
 use crate::component;
 use crate::fmi;
-use crate::record::RecordError;
+use crate::record::{ReadError, RecordError, RecoverError, RedriveError, TableError};
 use crate::scene::SceneErrors;
 use crate::validate;
 
@@ -21,6 +21,7 @@ Exit codes:
   4    a step failed; what was computed before it is kept
   5    a file could not be read or written, or a saved state does not fit
   6    the bus could not be opened or closed
+  7    a check found a difference
   130  stopped by Ctrl-C, after saving";
 
 /// Errors of the program.
@@ -47,6 +48,21 @@ pub enum CliError {
     /// The log cannot be written, and the scene requires it.
     #[error("error: {0}")]
     Log(#[from] RecordError),
+    /// A log cannot be read.
+    #[error("error: {0}")]
+    Read(#[from] ReadError),
+    /// A log cannot be recovered.
+    #[error("error: {0}")]
+    Recover(#[from] RecoverError),
+    /// A log cannot be run again.
+    #[error("error: {0}")]
+    Redrive(#[from] RedriveError),
+    /// The scalars of a log cannot be read.
+    #[error("error: {0}")]
+    Table(#[from] TableError),
+    /// A check found a difference; the text says where.
+    #[error("{0}")]
+    Differs(String),
     /// The bus could not be opened, or not be closed.
     #[cfg(feature = "bus")]
     #[error("error: {0}")]
@@ -96,7 +112,13 @@ impl CliError {
             Self::Bench(bench::Error::Scene { .. }) => 1,
             Self::Bench(_) => 5,
             Self::Validate(_) => 1,
-            Self::Log(_) | Self::File { .. } | Self::Content { .. } => 5,
+            Self::Redrive(RedriveError::Scene(_)) | Self::Table(TableError::Scene(_)) => 3,
+            Self::Redrive(RedriveError::Component(error)) => error.status().exit_code,
+            Self::Log(_) | Self::Read(_) | Self::Recover(_) | Self::Redrive(_) | Self::Table(_) => {
+                5
+            }
+            Self::File { .. } | Self::Content { .. } => 5,
+            Self::Differs(_) => 7,
             Self::Interrupted(_) => 130,
             #[cfg(feature = "bus")]
             Self::Bus(error) => match error {

@@ -14,6 +14,7 @@ mod clock;
 mod error;
 mod fmu;
 mod info;
+mod log;
 mod quantity;
 mod run;
 mod schema;
@@ -52,6 +53,8 @@ enum Command {
     /// Serve a case on Zenoh: gauges out, set-points and requests in
     #[cfg(feature = "bus")]
     Serve(serve::Args),
+    /// Look into logs, run them again, replay, recover and export them
+    Log(log::Args),
     /// Compare runs with published data and exact solutions, and write docs/validation
     Validate(validate::Args),
     /// Time the solver and whole scenes, and write docs/performance.md
@@ -88,6 +91,7 @@ fn dispatch(command: &Command) -> Result<(), CliError> {
         Command::Fmu(args) => fmu::run(args),
         #[cfg(feature = "bus")]
         Command::Serve(args) => serve::run(args),
+        Command::Log(args) => log::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Schema(args) => schema::run(args),
@@ -114,13 +118,18 @@ fn say(text: &str) -> Result<(), CliError> {
     out.write_all(text.as_bytes())
         .and_then(|()| out.write_all(b"\n"))
         .and_then(|()| out.flush())
-        .map_err(|source| match source.kind() {
-            std::io::ErrorKind::BrokenPipe => CliError::ReaderGone,
-            _ => CliError::File {
-                action: "write to",
-                path: "standard output".into(),
-                source,
-                remedy: "see where the output of this command goes",
-            },
-        })
+        .map_err(cannot_print)
+}
+
+/// What a failed write to standard output means.
+fn cannot_print(source: std::io::Error) -> CliError {
+    match source.kind() {
+        std::io::ErrorKind::BrokenPipe => CliError::ReaderGone,
+        _ => CliError::File {
+            action: "write to",
+            path: "standard output".into(),
+            source,
+            remedy: "see where the output of this command goes",
+        },
+    }
 }

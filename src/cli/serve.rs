@@ -36,7 +36,7 @@ pub(super) struct Args {
     /// Step without being asked: simulated over wall time, such as 1, or inf for as fast as possible
     #[arg(long, value_name = "FACTOR", value_parser = realtime_factor)]
     realtime_factor: Option<f64>,
-    /// Log all traffic to a new MCAP file; a reset or restore goes on in FILE-0001, ...
+    /// Log all traffic to a new MCAP file; a reset or restore goes on in FILE-1-0000, ...
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     /// Threads to compute with; 0 means all cores; results do not depend on it

@@ -26,31 +26,67 @@ pub(super) struct Channels {
     pub(super) frames: Channel,
     commands: BTreeMap<String, Channel>,
     base: String,
+    /// Where numbers go on from, by topic; 0 where nothing is said.
+    numbers: BTreeMap<String, u64>,
 }
 
 impl Channels {
     /// Adds the channels of `component` to `file`, all topics below `base`.
-    pub(super) fn add(file: &mut LogFile, component: &Component, base: &str) -> Self {
+    pub(super) fn add(
+        file: &mut LogFile,
+        component: &Component,
+        base: &str,
+        numbers: BTreeMap<String, u64>,
+    ) -> Self {
+        let numbered = |file: &mut LogFile, topic: &str, add: Adding| {
+            let mut channel = add(file, topic, out());
+            channel.next = numbers.get(topic).copied().unwrap_or(0);
+            channel
+        };
         let outputs = convert::outputs(component.variables())
             .into_iter()
             .map(|output| {
                 let metadata = output_metadata(component, &output);
-                let channel = add::<Gauge>(file, &keys::output(base, &output.name), metadata);
+                let topic = keys::output(base, &output.name);
+                let mut channel = add::<Gauge>(file, &topic, metadata);
+                channel.next = numbers.get(&topic).copied().unwrap_or(0);
                 (output, channel)
             })
             .collect();
-        let out = || BTreeMap::from([("direction".to_owned(), "out".to_owned())]);
         Self {
             outputs,
-            applied: add::<Applied>(file, &keys::applied(base), out()),
-            stats: add::<StepStats>(file, &keys::stats(base), out()),
-            log: add::<Log>(file, &keys::log(base), out()),
-            particles: add::<PointCloud>(file, &keys::particles(base), out()),
-            scene: add::<SceneUpdate>(file, &keys::scene(base), out()),
-            frames: add::<FrameTransform>(file, &keys::frames(base), out()),
+            applied: numbered(file, &keys::applied(base), add::<Applied>),
+            stats: numbered(file, &keys::stats(base), add::<StepStats>),
+            log: numbered(file, &keys::log(base), add::<Log>),
+            particles: numbered(file, &keys::particles(base), add::<PointCloud>),
+            scene: numbered(file, &keys::scene(base), add::<SceneUpdate>),
+            frames: numbered(file, &keys::frames(base), add::<FrameTransform>),
             commands: BTreeMap::new(),
             base: base.to_owned(),
+            numbers,
         }
+    }
+
+    /// The next number of each topic, for the file that follows.
+    pub(super) fn numbers(&self) -> BTreeMap<String, u64> {
+        let base = &self.base;
+        let mut numbers = self.numbers.clone();
+        numbers.extend(
+            self.commands
+                .iter()
+                .map(|(topic, c)| (topic.clone(), c.next)),
+        );
+        let outputs = self.outputs.iter();
+        numbers.extend(outputs.map(|(output, c)| (keys::output(base, &output.name), c.next)));
+        numbers.extend([
+            (keys::applied(base), self.applied.next),
+            (keys::stats(base), self.stats.next),
+            (keys::log(base), self.log.next),
+            (keys::particles(base), self.particles.next),
+            (keys::scene(base), self.scene.next),
+            (keys::frames(base), self.frames.next),
+        ]);
+        numbers
     }
 
     /// The channel of a call, added when it is first used: `.../@rpc/step/request`.
@@ -61,11 +97,23 @@ impl Channels {
         };
         let key = keys::control(&self.base, &command.interface, &command.verb);
         let topic = format!("{key}/{leaf}");
+        let first = self.numbers.get(&topic).copied().unwrap_or(0);
         self.commands.entry(topic.clone()).or_insert_with(|| {
             let metadata = BTreeMap::from([("direction".to_owned(), direction.to_owned())]);
-            add::<Command>(file, &topic, metadata)
+            let channel = add::<Command>(file, &topic, metadata);
+            Channel {
+                next: first,
+                ..channel
+            }
         })
     }
+}
+
+/// How a channel is added: [`add`] for one kind of message.
+type Adding = fn(&mut LogFile, &str, BTreeMap<String, String>) -> Channel;
+
+fn out() -> BTreeMap<String, String> {
+    BTreeMap::from([("direction".to_owned(), "out".to_owned())])
 }
 
 /// Adds one channel with the schema of `M`.

@@ -7,7 +7,8 @@
 //! the bytes do not depend on any clock.
 
 use super::error::Failure;
-use super::sink::{Latch, Sink};
+use super::raw::RawChannel;
+use super::sink::{Latch, Sink, Syncer};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use std::collections::BTreeMap;
@@ -35,6 +36,24 @@ pub(super) enum Pace {
     Caller,
 }
 
+/// How bytes are brought to the system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Writing {
+    /// Who decides when.
+    pub(super) pace: Pace,
+    /// Whether every flush goes to the disk itself.
+    pub(super) sync_every_flush: bool,
+}
+
+impl From<Pace> for Writing {
+    fn from(pace: Pace) -> Self {
+        Self {
+            pace,
+            sync_every_flush: false,
+        }
+    }
+}
+
 /// A channel's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ChannelId(u16);
@@ -54,8 +73,11 @@ struct State {
     mcap: Option<Mcap>,
     failure: Option<Failure>,
     written: u64,
+    /// Bytes of all messages so far.
+    bytes: u64,
     dropped: u64,
     unflushed: u64,
+    sync: Option<Syncer>,
     dirty_since: Option<Instant>,
     time: f64,
     stopped: bool,
@@ -72,7 +94,20 @@ pub(super) struct Counts {
 
 impl LogFile {
     /// Starts a file: magic and header. `path` is for messages to people.
-    pub(super) fn start(sink: Box<dyn Sink>, path: Option<PathBuf>, pace: Pace) -> Self {
+    pub(super) fn start(
+        sink: Box<dyn Sink>,
+        path: Option<PathBuf>,
+        writing: impl Into<Writing>,
+    ) -> Self {
+        let Writing {
+            pace,
+            sync_every_flush,
+        } = writing.into();
+        let sync = if sync_every_flush {
+            sink.syncer()
+        } else {
+            None
+        };
         let buffered = BufWriter::with_capacity(1 << 16, Latch::new(sink));
         let created = mcap::WriteOptions::new()
             .compression(None)
@@ -85,8 +120,10 @@ impl LogFile {
             mcap: None,
             failure: None,
             written: 0,
+            bytes: 0,
             dropped: 0,
             unflushed: 0,
+            sync,
             dirty_since: None,
             time: 0.0,
             stopped: false,
@@ -144,6 +181,18 @@ impl LogFile {
         ChannelId(added.unwrap_or(0))
     }
 
+    /// Adds a channel as another file has it.
+    pub(super) fn raw_channel(&mut self, channel: &RawChannel) -> ChannelId {
+        let added = self.with(|mcap| {
+            let schema = match channel.schema.name.as_str() {
+                "" => 0,
+                name => mcap.add_schema(name, &channel.schema.encoding, &channel.schema.data)?,
+            };
+            mcap.add_channel(schema, &channel.topic, &channel.encoding, &channel.metadata)
+        });
+        ChannelId(added.unwrap_or(0))
+    }
+
     /// Adds a message. `time` is simulated time [s], the others as in MCAP.
     pub(super) fn message(
         &mut self,
@@ -166,6 +215,7 @@ impl LogFile {
             return;
         }
         state.written += 1;
+        state.bytes += data.len() as u64;
         state.unflushed += 1;
         state.dirty_since.get_or_insert_with(Instant::now);
         state.with(self.path.as_ref(), |mcap| {
@@ -200,6 +250,18 @@ impl LogFile {
             dropped: state.dropped,
         };
         (counts, state.failure.clone())
+    }
+
+    /// Bytes of all messages so far, without what MCAP adds.
+    pub(super) fn bytes(&self) -> u64 {
+        self.lock().bytes
+    }
+
+    /// Writes nothing more, as if a write had failed for this reason.
+    pub(super) fn give_up(&mut self, cause: &str) {
+        let path = self.path.clone();
+        let error = mcap::McapError::Io(std::io::Error::other(cause.to_owned()));
+        self.lock().fail(&error, path.as_ref());
     }
 
     /// The first failure, if there was one.
@@ -258,10 +320,17 @@ impl State {
     }
 
     fn flush(&mut self, path: Option<&PathBuf>) {
-        if self.with(path, mcap::Writer::flush).is_some() {
-            self.unflushed = 0;
-            self.dirty_since = None;
+        if self.with(path, mcap::Writer::flush).is_none() {
+            return;
         }
+        if let Some(sync) = &mut self.sync
+            && let Err(error) = sync()
+        {
+            self.fail(&error.into(), path);
+            return;
+        }
+        self.unflushed = 0;
+        self.dirty_since = None;
     }
 
     /// Latches the first failure. Messages that were only in memory count as dropped.

@@ -1,7 +1,8 @@
 //! Proof of a file's account of mass: at every line, initial + inflow - outflow = present, exactly.
 
 use super::error::ReadError;
-use super::read::{Body, Ending, Entry, LogReader};
+use super::raw::Ending;
+use super::read::{Body, Entry, LogReader};
 use crate::component::MassLedger;
 use std::path::Path;
 

@@ -16,21 +16,35 @@ pub struct RecordOptions {
     pub required: bool,
     /// Particle snapshots every so many seconds of simulated time, 0 for none [s].
     pub particles_every: f64,
-    /// Why this file begins: "start", "resumed", "reset", "restored".
+    /// A new file every so many seconds of simulated time, 0 for never [s].
+    pub rotate_every: f64,
+    /// A new file when the messages of one take so many bytes, 0 for never.
+    pub rotate_bytes: u64,
+    /// Whether every flush goes to the disk itself (fsync), not only the end of a file.
+    pub sync_every_flush: bool,
+    /// Why this file begins: "start", "resumed", "rotated", "reset", "restored".
     pub reason: String,
     /// Files to carry along, such as modelDescription.xml: name, media type, bytes.
     pub attachments: Vec<(String, String, Vec<u8>)>,
 }
 
 impl RecordOptions {
-    /// What the component's scene asks for: instance and snapshots from the scene, `publish_time` from the wall clock.
+    /// Whether a log goes over several files.
+    pub(super) fn rotates(&self) -> bool {
+        self.rotate_every > 0.0 || self.rotate_bytes > 0
+    }
+
+    /// What the component's scene asks for.
     #[must_use]
     pub fn of(component: &Component) -> Self {
         let scene = component.scene();
         Self {
             instance: scene.name.clone(),
-            deterministic: false,
+            deterministic: scene.log.deterministic,
             required: scene.log.required,
+            rotate_every: scene.log.rotate_every,
+            rotate_bytes: scene.log.rotate_bytes,
+            sync_every_flush: scene.log.sync_every_flush,
             particles_every: scene.log.particles_every,
             reason: "start".to_owned(),
             attachments: Vec::new(),

@@ -1,4 +1,5 @@
-//! Names of log files: never overwritten, unfinished ones told apart, numbered after a reset or restore.
+//! Names of log files: never overwritten, unfinished ones told apart by `.part`, numbered by epoch (how often the
+//! component was reset or restored) and within it.
 
 use super::error::RecordError;
 use std::path::PathBuf;
@@ -8,18 +9,49 @@ use std::path::PathBuf;
 pub(super) struct Place {
     /// As given by the caller.
     pub(super) first: PathBuf,
-    /// Number of this file, from 0.
-    pub(super) segment: u32,
+    /// How often the component jumped (was reset or restored) before this file.
+    pub(super) epoch: u32,
+    /// Number of this file within its epoch, from 0.
+    pub(super) number: u32,
+    /// Whether a log goes over several files: then the first one has numbers, too.
+    pub(super) rotates: bool,
 }
 
 impl Place {
-    /// `run.mcap`, then `run-0001.mcap`, ...
+    /// One file that no other follows.
+    pub(super) fn alone(path: &std::path::Path) -> Self {
+        Self {
+            first: path.to_owned(),
+            epoch: 0,
+            number: 0,
+            rotates: false,
+        }
+    }
+
+    /// The file that follows in the same epoch.
+    pub(super) fn next(&self) -> Self {
+        Self {
+            number: self.number + 1,
+            ..self.clone()
+        }
+    }
+
+    /// The first file after a jump.
+    pub(super) fn jumped(&self) -> Self {
+        Self {
+            epoch: self.epoch + 1,
+            number: 0,
+            ..self.clone()
+        }
+    }
+
+    /// `run.mcap`, then `run-1-0000.mcap`, ...; if it rotates, `run-0-0000.mcap`, `run-0-0001.mcap`, ...
     pub(super) fn path(&self) -> PathBuf {
-        if self.segment == 0 {
+        if self.epoch == 0 && self.number == 0 && !self.rotates {
             return self.first.clone();
         }
         let mut name = self.first.file_stem().unwrap_or_default().to_owned();
-        name.push(format!("-{:04}", self.segment));
+        name.push(format!("-{}-{:04}", self.epoch, self.number));
         if let Some(extension) = self.first.extension() {
             name.push(".");
             name.push(extension);

@@ -3,6 +3,7 @@
 use super::error::RecordError;
 use super::file::LogFile;
 use super::options::RecordOptions;
+use super::place::Place;
 use crate::component::{Component, Mode};
 use crate::wire::convert::nanoseconds;
 use std::collections::BTreeMap;
@@ -13,7 +14,7 @@ pub(super) fn write_preamble(
     file: &mut LogFile,
     component: &Component,
     options: &RecordOptions,
-    segment: u32,
+    place: Option<&Place>,
 ) -> Result<(), RecordError> {
     let scene = component.scene();
     let run = [
@@ -29,7 +30,8 @@ pub(super) fn write_preamble(
     ];
     file.metadata("run", owned(run));
     let begin = [
-        ("number", segment.to_string()),
+        ("epoch", place.map_or(0, |p| p.epoch).to_string()),
+        ("number", place.map_or(0, |p| p.number).to_string()),
         ("reason", options.reason.clone()),
         ("time", component.time().to_string()),
     ];

@@ -7,7 +7,15 @@ use std::io::{self, Write};
 pub(super) trait Sink: Write + Send {
     /// Asks the system to bring all bytes to the disk.
     fn sync(&mut self) -> io::Result<()>;
+
+    /// The same for who does not have the sink at hand; none if it has no disk.
+    fn syncer(&self) -> Option<Syncer> {
+        None
+    }
 }
+
+/// Asks the system to bring all bytes of a sink to the disk.
+pub(super) type Syncer = Box<dyn FnMut() -> io::Result<()> + Send>;
 
 impl Sink for File {
     fn sync(&mut self) -> io::Result<()> {
@@ -16,6 +24,11 @@ impl Sink for File {
             Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(()),
             other => other,
         }
+    }
+
+    fn syncer(&self) -> Option<Syncer> {
+        let mut own = self.try_clone().ok()?;
+        Some(Box::new(move || Sink::sync(&mut own)))
     }
 }
 

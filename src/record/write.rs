@@ -5,7 +5,7 @@
 
 use super::channels::{Channel, Channels};
 use super::error::{Failure, RecordError};
-use super::file::{LogFile, Pace};
+use super::file::{LogFile, Pace, Writing};
 use super::options::{Finished, RecordOptions};
 use super::place::Place;
 use super::preamble::{has_state, owned, write_preamble};
@@ -16,6 +16,7 @@ use crate::wire::foxglove::{Log, LogLevel};
 use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Command};
 use crate::wire::{keys, picture};
 use prost::Message;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -26,7 +27,10 @@ pub struct Recorder {
     options: RecordOptions,
     pub(super) place: Option<Place>,
     pending: Vec<AppliedInput>,
+    /// Time from which snapshots are counted [s].
     first_time: f64,
+    /// Time at which this file begins [s].
+    began: f64,
     /// Snapshots that were due so far.
     snapshots: u64,
     trouble: Option<RecordError>,
@@ -55,13 +59,13 @@ impl Recorder {
         options: RecordOptions,
     ) -> Result<Self, RecordError> {
         let place = Place {
-            first: path.to_owned(),
-            segment: 0,
+            rotates: options.rotates(),
+            ..Place::alone(path)
         };
         // Before the file is made, so that a bad name leaves none behind.
         keys::base(keys::ROOT, &options.instance)?;
         let sink = Box::new(place.create()?);
-        Self::start(sink, Some(place), component, options)
+        Self::start(sink, Some(place), component, options, None)
     }
 
     pub(super) fn start(
@@ -69,6 +73,7 @@ impl Recorder {
         place: Option<Place>,
         component: &Component,
         options: RecordOptions,
+        numbers: Option<BTreeMap<String, u64>>,
     ) -> Result<Self, RecordError> {
         let base = keys::base(keys::ROOT, &options.instance)?;
         let pace = if options.deterministic {
@@ -76,10 +81,13 @@ impl Recorder {
         } else {
             Pace::WallClock
         };
-        let segment = place.as_ref().map_or(0, |p| p.segment);
-        let mut file = LogFile::start(sink, place.as_ref().map(Place::part), pace);
-        write_preamble(&mut file, component, &options, segment)?;
-        let channels = Channels::add(&mut file, component, &base);
+        let writing = Writing {
+            pace,
+            sync_every_flush: options.sync_every_flush,
+        };
+        let mut file = LogFile::start(sink, place.as_ref().map(Place::part), writing);
+        write_preamble(&mut file, component, &options, place.as_ref())?;
+        let channels = Channels::add(&mut file, component, &base, numbers.unwrap_or_default());
         let mut recorder = Self {
             file,
             channels,
@@ -87,6 +95,7 @@ impl Recorder {
             place,
             pending: Vec::new(),
             first_time: component.time(),
+            began: component.time(),
             snapshots: 0,
             trouble: None,
             last: Last::default(),
@@ -168,7 +177,57 @@ impl Recorder {
     ) -> Result<(), RecordError> {
         self.applied(component, AppliedEvent::Step, (t, h), source);
         self.outputs(component, Some(report))?;
-        self.end_of_step()
+        self.end_of_step()?;
+        self.rotate(component)
+    }
+
+    /// Goes on in the next file (`run-0-0001.mcap`) if it is time. That file starts with the state as it is now and
+    /// counts messages on, so that a gap between files can be seen.
+    fn rotate(&mut self, component: &Component) -> Result<(), RecordError> {
+        let RecordOptions {
+            rotate_every,
+            rotate_bytes,
+            ..
+        } = self.options;
+        // A billionth is allowed for, as in `particles_due`.
+        let late =
+            rotate_every > 0.0 && component.time() - self.began >= rotate_every * (1.0 - 1e-9);
+        let large = rotate_bytes > 0 && self.file.bytes() >= rotate_bytes;
+        let Some(place) = self.place.as_ref().filter(|_| late || large) else {
+            return Ok(());
+        };
+        if self.file.failure().is_some() {
+            return Ok(());
+        }
+        match self.follow(place.next(), component, "rotated") {
+            Ok(mut following) => {
+                following.first_time = self.first_time;
+                following.snapshots = self.snapshots;
+                let before = std::mem::replace(self, following);
+                before.finish(component, "rotated").map(drop)
+            }
+            Err(error) if self.options.required => Err(error),
+            Err(error) => {
+                self.file.give_up(&error.to_string());
+                Ok(())
+            }
+        }
+    }
+
+    /// The file that takes over from this one.
+    fn follow(
+        &self,
+        next: Place,
+        component: &Component,
+        reason: &str,
+    ) -> Result<Self, RecordError> {
+        let options = RecordOptions {
+            reason: reason.to_owned(),
+            ..self.options.clone()
+        };
+        let sink = Box::new(next.create()?);
+        let numbers = (reason == "rotated").then(|| self.channels.numbers());
+        Self::start(sink, Some(next), component, options, numbers)
     }
 
     /// A call from outside, or the reply to one.
@@ -232,7 +291,7 @@ impl Recorder {
         self.check()
     }
 
-    /// The component was reset or restored: ends this file and starts the next (`run-0001.mcap`), which carries the
+    /// The component was reset or restored: ends this file and starts the next (`run-1-0000.mcap`), which carries the
     /// state it starts from.
     ///
     /// # Errors
@@ -250,20 +309,11 @@ impl Recorder {
         let reason = match event {
             AppliedEvent::Reset => "reset",
             AppliedEvent::Restore => "restored",
-            AppliedEvent::Step | AppliedEvent::Initialize => "start",
+            AppliedEvent::Step | AppliedEvent::Initialize | AppliedEvent::Set => "start",
         };
-        let next = Place {
-            segment: place.segment + 1,
-            ..place
-        };
-        let options = RecordOptions {
-            reason: reason.to_owned(),
-            ..self.options.clone()
-        };
-        let sink = Box::new(next.create()?);
-        let mut following = Self::start(sink, Some(next), component, options)?;
+        let mut following = self.follow(place.jumped(), component, reason)?;
         following.trouble = self.trouble.take();
-        std::mem::replace(self, following).close(None, reason)?;
+        std::mem::replace(self, following).close(BTreeMap::new(), reason)?;
         Ok(())
     }
 
@@ -297,11 +347,27 @@ impl Recorder {
     /// [`RecordError::Required`] if the log is required and not whole, [`RecordError::Rename`].
     pub fn finish(mut self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
         self.remember(component);
-        self.close(Some(component.state_hash()), reason)
+        let state = [
+            ("mode".to_owned(), format!("{:?}", component.mode())),
+            ("state_hash".to_owned(), component.state_hash()),
+        ];
+        self.close(state.into(), reason)
     }
 
-    fn close(mut self, state_hash: Option<String>, reason: &str) -> Result<Finished, RecordError> {
+    fn close(
+        mut self,
+        state: BTreeMap<String, String>,
+        reason: &str,
+    ) -> Result<Finished, RecordError> {
         let last = self.last;
+        if !self.pending.is_empty() {
+            self.write_applied(
+                AppliedEvent::Set,
+                last.communication_steps,
+                (last.time, 0.0),
+                "",
+            );
+        }
         let mut end = owned([
             ("reason", reason.to_owned()),
             ("time", last.time.to_string()),
@@ -310,7 +376,7 @@ impl Recorder {
             ("steps", last.steps.to_string()),
             ("dropped", self.dropped().to_string()),
         ]);
-        end.extend(state_hash.map(|hash| ("state_hash".to_owned(), hash)));
+        end.extend(state);
         self.file.metadata("end", end);
         let (counts, failure) = self.file.finish();
         if let (Some(failure), true) = (&failure, self.options.required) {
@@ -362,6 +428,10 @@ impl Recorder {
             AppliedEvent::Initialize => 0,
             _ => component.statistics().communication_steps,
         };
+        self.write_applied(event, step, (t, h), source);
+    }
+
+    fn write_applied(&mut self, event: AppliedEvent, step: u64, (t, h): (f64, f64), source: &str) {
         let applied = Applied {
             timestamp: Some(timestamp(t)),
             event: event as i32,

@@ -408,6 +408,14 @@ pub struct LogSettings {
     pub particles_every: f64,
     /// Whether a run stops when its log cannot be written.
     pub required: bool,
+    /// Whether equal runs give equal bytes.
+    pub deterministic: bool,
+    /// A new file every so many seconds of simulated time; 0 means never [s].
+    pub rotate_every: f64,
+    /// A new file when the messages of one take so many bytes; 0 means never.
+    pub rotate_bytes: u64,
+    /// Whether every flush goes to the disk itself, not only the end of a file.
+    pub sync_every_flush: bool,
 }
 
 /// The axis that gravity mostly points against, as a unit vector.

@@ -85,6 +85,8 @@ messages! {
             Reset = 2,
             /// `restore(...)`: back or forth to a saved state.
             Restore = 3,
+            /// Inputs that were set after the last step of the file: no step of it used them.
+            Set = 4,
         }
     }
 

@@ -24,6 +24,8 @@ mod fmu;
 mod gauges;
 mod json_schema;
 mod licenses;
+#[cfg(all(feature = "record", feature = "cli"))]
+mod logs;
 mod physics;
 mod python;
 #[cfg(all(feature = "record", feature = "cli"))]

@@ -282,7 +282,7 @@ fn a_restored_component_goes_on_in_a_file_of_its_own() {
         .unwrap();
     step(&mut component, &mut recorder, &scene);
     let finished = recorder.finish(&component, "finished").unwrap();
-    let second = folder.path().join("silo-0001.mcap");
+    let second = folder.path().join("silo-1-0000.mcap");
     assert_eq!(finished.path.as_ref(), Some(&second));
 
     let read = |path: &Path| -> Vec<Entry> {

@@ -5,9 +5,13 @@ import json
 import os
 import pathlib
 import queue
+import random
+import re
+import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
@@ -205,6 +209,74 @@ def test_bad_messages_get_one_reply_each_and_nothing_happens(session, silo):
         assert is_error == (code == "wildcard")
         assert reply["step"] == 0 and reply["mode"] == "stepping"
     assert silo.ask("save")["state_hash"] == before
+
+
+def noise(dice):
+    """A message that somebody with a broken program might send: key, payload, and whether it is a query."""
+    verbs = ["describe", "status", "get", "set", "step", "run", "pause", "reset", "save", "restore", "terminate", "*", "", "x"]
+    deep = "[" * dice.randrange(1, 300) + "]" * dice.randrange(0, 300)
+    numbers = ["NaN", "Infinity", "-Infinity", "1e999", "-1", "1e-400", "0x10", "true", "null", "9" * 400, deep, '""', "{}", "[1,2]"]
+    texts = ['"\\u0000"', '"' + "a" * dice.randrange(0, 5000) + '"', '"\\ud800"', "7", "null", "[]"]
+    fields = {
+        "req": texts + ['""'], "client": texts, "t_ns": numbers, "dt_ns": numbers, "expect_step": numbers + ["12345"],
+        "inputs": numbers + [f'{{"{GATE}": {dice.choice(numbers)}}}', '{"gate.none.opening": 1}', f'{{"{GATE}":1,"{GATE}":1}}'],
+        "outputs": numbers + ['["no"]', "[1]"], "state": texts, "realtime_factor": numbers, "unknown": ["1"],
+    }
+    names = dice.sample(sorted(fields), dice.randrange(0, 6))
+    body = "{" + ",".join(f'"{name}":{dice.choice(fields[name])}' for name in names) + "}"
+    kind = dice.randrange(6)
+    if kind == 0:
+        payload = dice.randbytes(dice.randrange(0, 400))
+    elif kind == 1:
+        payload = body.encode()[: dice.randrange(0, len(body) + 1)]
+    elif kind == 2:
+        payload = body.encode() + dice.randbytes(3)
+    elif kind == 3 and dice.random() < 0.02:
+        payload = body.encode() + b" " * (1 << 20)
+    else:
+        payload = body.encode()
+    if dice.random() < 0.5:
+        return f"{BASE}/@rpc/{dice.choice(verbs)}".rstrip("/"), payload, True
+    leaf = dice.choice([GATE, "gate.none.opening", "*", "**", f"{GATE}/x", "gauge.level.depth"])
+    if leaf == GATE and kind > 2:
+        payload = dice.choice(numbers[:5] + ['"open"', '{"value":NaN}', '{"value":2}', '{"value":[0,1]}', "{}"]).encode()
+    return f"{BASE}/in/{leaf}", payload, False
+
+
+def test_a_thousand_broken_messages_change_nothing(tmp_path):
+    """Requests without a usable `req` or body, set-points out of range, deletes: all refused, all counted."""
+    with served() as (server, session, silo):
+        silo.ask("step")
+        before = silo.ask("save")["state_hash"]
+        dice = random.Random(1)
+        asked = answered = sent = 0
+        while asked + sent < 1000:
+            key, payload, is_query = noise(dice)
+            try:
+                body = json.loads(payload)
+            except (ValueError, RecursionError):
+                body = None
+            # What happens to be right is no noise: it is left out here, as are wishes to run or to end.
+            usable = isinstance(body, dict) and isinstance(body.get("req"), str) and body.get("expect_step") != 12345
+            if is_query and usable and key.rsplit("/", 1)[-1] not in ("describe", "status", "get"):
+                continue
+            if is_query:
+                asked += 1
+                answered += sum(1 for _ in session.get(key, payload=payload, timeout=30.0))
+            elif dice.random() < 0.1:
+                sent += 1
+                session.delete(key.replace("**", "x").replace("*", "x"))
+            else:
+                sent += 1
+                session.put(key, payload)
+        assert answered == asked > 300 and sent > 300
+        until(lambda: silo.ask("status")["refused_set_points"] >= sent * 0.99)
+        status = silo.ask("status")
+        assert status["refused_set_points"] == sent and status["step"] == 1
+        assert silo.ask("save")["state_hash"] == before
+        assert server.process.poll() is None
+        _, errors = server.end()
+        assert "panick" not in errors
 
 
 def test_a_repeated_request_gets_the_same_reply_and_no_second_step(session, silo):
@@ -422,3 +494,68 @@ def test_the_example_runs():
         assert example.returncode == 0, example.stderr
         assert example.stdout.startswith("step 10: gate at 0.")
         assert "gauge.outlet.discharge" in example.stdout and "account off by 0.0 kg" in example.stdout
+
+
+@pytest.fixture
+def small_disk():
+    """A folder with room for 200 kB: a file system of its own where one may be mounted, else a limit on files."""
+    folder = tempfile.mkdtemp()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", folder]
+    mounted = subprocess.run(mount, capture_output=True).returncode == 0
+
+    def limit():
+        if not mounted:
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+
+    yield pathlib.Path(folder), limit
+    if mounted:
+        subprocess.run(["umount", folder], check=True)
+
+
+@pytest.mark.parametrize("required", [False, True])
+def test_a_full_disk_ends_the_log_and_the_component_only_if_it_must(tmp_path, small_disk, required):
+    folder, limit = small_disk
+    scene, log = tmp_path / "silo.toml", folder / "served.mcap"
+    usual = 'particles_every = "50 ms"'
+    scene.write_text(SCENE.read_text().replace(usual, f"{usual}\nrequired = {str(required).lower()}"))
+    command = [os.environ["SANDGATE"], "serve", str(scene), "--threads", "1", "--log", str(log)]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=limit
+    ) as process:
+        try:
+            endpoint = next(line for line in process.stdout if line.startswith("listening on ")).split()[-1]
+            with open_session(endpoint) as session:
+                silo = Component(session, "small_silo", client="pytest")
+                lines = []
+                reader = threading.Thread(target=lambda: lines.extend(process.stderr), daemon=True)
+                reader.start()
+                steps = 0
+                end = time.monotonic() + 60
+                while not lines and process.poll() is None and time.monotonic() < end:
+                    with contextlib.suppress(TimeoutError, Refused):
+                        steps = silo.ask("step", dt_ns=200_000, timeout=10.0)["step"]
+                if required:
+                    process.wait(timeout=60)
+                else:
+                    # It goes on without its log.
+                    for more in range(1, 50):
+                        assert silo.ask("step", dt_ns=200_000)["step"] == steps + more
+            if not required:
+                process.send_signal(signal.SIGINT)
+            process.wait(timeout=60)
+            reader.join(timeout=20)
+        finally:
+            process.kill()
+    told = [line for line in lines if "log stopped at simulated time" in line]
+    assert process.returncode == (5 if required else 0), lines
+    assert len(told) == 1, lines
+    assert any(word in told[0] for word in ("No space left on device", "File too large"))
+    assert required == ("the scene requires its log" in told[-1])
+    whole = tmp_path / "whole.mcap"
+    command = [os.environ["SANDGATE"], "log", "recover", str(log) + ".part", str(whole)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    count = int(re.search(r"whole.mcap: (\d+) messages", done.stdout)[1])
+    # Ninety in a hundred bytes of the disk hold whole messages (of a hundred bytes each, with MCAP's own).
+    assert count > 1000 and steps > 30

@@ -5,9 +5,12 @@
 //! query is answered exactly once, also when a thread panics or the server ends ([`Waiting`]).
 
 mod desk;
+mod outlet;
 mod press;
 mod replies;
 mod session;
+
+pub use self::outlet::Outlet;
 
 use self::desk::{Desk, Entrances};
 use self::press::Press;

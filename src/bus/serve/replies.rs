@@ -97,12 +97,7 @@ fn send_last_values(mut waiting: Waiting, last: &LastValues) {
     let Some(query) = waiting.query.take() else {
         return;
     };
-    let matches = |key: &str| KeyExpr::new(key).is_ok_and(|k| k.intersects(query.key_expr()));
-    let found: Vec<Publication> = lock(last)
-        .values()
-        .filter(|publication| matches(&publication.key))
-        .cloned()
-        .collect();
+    let found = find_last_values(&query, last);
     for publication in &found {
         // As in `send_reply`.
         let _ = query
@@ -118,6 +113,16 @@ fn send_last_values(mut waiting: Waiting, last: &LastValues) {
     }
 }
 
+/// The last publications at the keys that a query names.
+pub(super) fn find_last_values(query: &Query, last: &LastValues) -> Vec<Publication> {
+    let matches = |key: &str| KeyExpr::new(key).is_ok_and(|k| k.intersects(query.key_expr()));
+    lock(last)
+        .values()
+        .filter(|publication| matches(&publication.key))
+        .cloned()
+        .collect()
+}
+
 pub(super) fn encoding(publication: &Publication) -> Encoding {
-    Encoding::APPLICATION_PROTOBUF.with_schema(publication.schema)
+    Encoding::APPLICATION_PROTOBUF.with_schema(publication.schema.as_ref())
 }

@@ -114,14 +114,19 @@ impl Folder {
         self.path.join(name)
     }
 
-    /// Name of the next log segment: `run.mcap`, then `run-2.mcap`, ...
+    /// Name of the next log: `run.mcap`, then `run-2.mcap`, ... A log over several files has numbers behind its name.
     pub(super) fn next_log(&self) -> String {
+        let taken = |name: &str| {
+            [name.to_owned(), numbered(name)]
+                .iter()
+                .any(|name| self.file(name).exists() || self.file(&format!("{name}.part")).exists())
+        };
         (1_u32..)
             .map(|n| match n {
                 1 => "run.mcap".to_owned(),
                 n => format!("run-{n}.mcap"),
             })
-            .find(|name| !self.file(name).exists() && !self.file(&format!("{name}.part")).exists())
+            .find(|name| !taken(name))
             .unwrap_or_else(|| "run.mcap".to_owned())
     }
 
@@ -140,6 +145,11 @@ impl Folder {
                 remedy: "make room or choose another folder with --out",
             })
     }
+}
+
+/// The first file of a log that goes over several.
+fn numbered(name: &str) -> String {
+    format!("{}-0-0000.mcap", name.trim_end_matches(".mcap"))
 }
 
 /// Files that a run makes; nothing else in a folder is ever touched.

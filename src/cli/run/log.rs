@@ -128,7 +128,11 @@ impl RunLog {
         // A short run meets a full disk only here, when the last bytes are written.
         if let Some(failure) = finished.failure {
             let dropped = finished.dropped;
-            eprintln!("warning: {failure}; {dropped} messages are not in the log");
+            if self.warned {
+                eprintln!("warning: {dropped} messages are not in the log");
+            } else {
+                eprintln!("warning: {failure}; {dropped} messages are not in the log");
+            }
         }
         Ok(())
     }

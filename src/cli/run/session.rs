@@ -159,16 +159,20 @@ impl Session {
     }
 
     fn announce(&mut self) -> Result<(), CliError> {
-        let text = format!(
-            "{}: {} particles, {} threads, communication step {} s, to t = {} s",
-            self.case,
+        let what = format!(
+            "{} particles, communication step {} s, to t = {} s",
             self.component.statistics().particles,
-            self.threads(),
             self.plan.step,
             self.plan.until
         );
-        eprintln!("{text}, results in {}", self.folder.path().display());
-        self.log.say(&self.component, &text)
+        let (threads, folder) = (self.threads(), self.folder.path().display());
+        eprintln!(
+            "{}: {what}, {threads} threads, results in {folder}",
+            self.case
+        );
+        // Without path and threads: results do not depend on them, nor do the bytes of a deterministic log.
+        let name = &self.component.scene().name;
+        self.log.say(&self.component, &format!("{name}: {what}"))
     }
 
     /// Threads in use.

@@ -63,9 +63,11 @@ impl Log {
         }
         if let Some(failure) = self.recorder.failure() {
             self.failed = true;
-            eprintln!("warning: {failure}");
             if self.required {
+                // `finish` tells why.
                 self.stop.store(true, Ordering::SeqCst);
+            } else {
+                eprintln!("warning: {failure}; the component goes on without its log");
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Run times, schedules and log settings.
 
 use super::Lift;
-use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint};
+use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint, SyncWord};
 use crate::scene::types::{Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule};
 use crate::units::{Quantity, quote};
 
@@ -48,6 +48,10 @@ impl Lift<'_> {
             return Some(LogSettings {
                 particles_every: USUAL.max(step),
                 required: true,
+                deterministic: false,
+                rotate_every: 0.0,
+                rotate_bytes: 0,
+                sync_every_flush: false,
             });
         };
         let every = log.value.particles_every.as_ref()?;
@@ -67,6 +71,11 @@ impl Lift<'_> {
         Some(LogSettings {
             particles_every,
             required: log.value.required.as_ref()?.value.0,
+            deterministic: log.value.deterministic.as_ref()?.value.0,
+            rotate_every: log.value.rotate_every.as_ref()?.value.0,
+            // `as` saturates.
+            rotate_bytes: (log.value.rotate_megabytes.as_ref()?.value.0 * 1e6) as u64,
+            sync_every_flush: log.value.sync.as_ref()?.value == SyncWord::Flush,
         })
     }
 

@@ -551,5 +551,23 @@ table! {
         optional particles_every: Time, in Range::from(0.0), default "50 ms";
         /// Whether a run stops when its log cannot be written.
         optional required: Flag, default true;
+        /// Whether equal runs give equal bytes: no wall clock in the log, and chunks end with communication steps.
+        optional deterministic: Flag, default false;
+        /// Begin a new file every so many seconds of simulated time; 0 never does.
+        optional rotate_every: Time, in Range::from(0.0), default 0.0;
+        /// Begin a new file when the messages of one take so many megabytes; 0 never does.
+        optional rotate_megabytes: Ratio, in Range::from(0.0), default 0.0;
+        /// When the system is asked to bring what was written to the disk.
+        optional sync: SyncWord, default "file";
+    }
+}
+
+choice! {
+    /// When written bytes are brought to the disk, so that they survive a loss of power.
+    SyncWord {
+        /// when a file is finished; a loss of power may cost what the system had not written by itself
+        "file" => File,
+        /// twice a second (in deterministic logs after every communication step); slower
+        "flush" => Flush,
     }
 }

@@ -1,0 +1,106 @@
+//! `sandgate log export FILE`: tables and pictures for other programs.
+
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+
+use super::{Window, parquet, vtk};
+use crate::cli::{CliError, say};
+use crate::record::Table;
+
+/// What may be typed after `sandgate log export`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+#[group(id = "formats", required = true, multiple = true, args = ["csv", "parquet", "vtk"])]
+pub(super) struct Args {
+    /// A log file
+    file: PathBuf,
+    /// All scalars over time, a row each communication point, as the run's gauges.csv has them
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// The same as Parquet, units and descriptions as metadata of the columns
+    #[arg(long, value_name = "FILE")]
+    parquet: Option<PathBuf>,
+    /// Particles, walls and gates as VTK in a new folder; open particles.pvd and walls.pvd in ParaView
+    #[arg(long, value_name = "DIR")]
+    vtk: Option<PathBuf>,
+    #[command(flatten)]
+    window: Window,
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  sandgate log export run.mcap --csv gauges.csv --parquet gauges.parquet
+  sandgate log export run.mcap --vtk vtk --from '1 s'
+
+All values are SI. Files that exist are not overwritten.";
+
+/// Carries out `sandgate log export`.
+///
+/// # Errors
+/// [`CliError::Table`], [`CliError::Read`], [`CliError::File`].
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    if args.csv.is_some() || args.parquet.is_some() {
+        let table = Table::read(&args.file, args.window.span())?;
+        let shape = format!(
+            "{} rows, {} columns",
+            table.time.len(),
+            table.columns.len() + 1
+        );
+        if let Some(path) = &args.csv {
+            let mut file = BufWriter::new(create(path)?);
+            write_csv(&mut file, &table)
+                .and_then(|()| file.flush())
+                .map_err(|e| cannot_write(path, e))?;
+            say(&format!("{}: {shape}", path.display()))?;
+        }
+        if let Some(path) = &args.parquet {
+            parquet::write(create(path)?, &table)
+                .map_err(|e| cannot_write(path, std::io::Error::other(e)))?;
+            say(&format!("{}: {shape}", path.display()))?;
+        }
+    }
+    if let Some(folder) = &args.vtk {
+        say(&vtk::write(&args.file, folder, &args.window)?)?;
+    }
+    Ok(())
+}
+
+/// The shortest decimals that read back to the same bits; empty where the log says nothing.
+fn write_csv(out: &mut impl std::io::Write, table: &Table) -> std::io::Result<()> {
+    write!(out, "time")?;
+    for column in &table.columns {
+        write!(out, ",{}", column.name)?;
+    }
+    writeln!(out)?;
+    for (row, time) in table.time.iter().enumerate() {
+        write!(out, "{time:?}")?;
+        for column in &table.columns {
+            match column.values[row] {
+                value if value.is_nan() => write!(out, ",")?,
+                value => write!(out, ",{value:?}")?,
+            }
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// A new file.
+pub(super) fn create(path: &Path) -> Result<File, CliError> {
+    File::create_new(path).map_err(|source| CliError::File {
+        action: "create",
+        path: path.to_owned(),
+        source,
+        remedy: "choose a name that is free, in a folder that can be written",
+    })
+}
+
+pub(super) fn cannot_write(path: &Path, source: std::io::Error) -> CliError {
+    CliError::File {
+        action: "write",
+        path: path.to_owned(),
+        source,
+        remedy: "make room or choose another folder",
+    }
+}

@@ -1,0 +1,111 @@
+//! `sandgate log redrive FILE`: the run again, compared bit for bit.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use crate::cli::{CliError, quantity, say};
+use crate::record::{Ending, RedriveOptions, Redriven, redrive};
+
+/// What may be typed after `sandgate log redrive`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(super) struct Args {
+    /// Log files; each is run from its own start
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// End with exit code 7 if anything differs
+    #[arg(long)]
+    check: bool,
+    /// Log the new run to this file, which must not exist
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+    /// Particle snapshots in that log every so much simulated time [default: the scene's]
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, requires = "log")]
+    particles_every: Option<f64>,
+    /// Threads to compute with; 0 means all cores; results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
+    threads: u16,
+}
+
+const AFTER_HELP: &str = "\
+The scene (and the state, if the file starts from one) is taken from the log itself. Inputs are set and steps are made
+with the bits that were recorded; then every output, figure, frame and snapshot is compared, and at the end the hash of
+the state. Another processor may compute other bits where it adds or multiplies otherwise: compare on the same kind.";
+
+/// Carries out `sandgate log redrive`.
+///
+/// # Errors
+/// [`CliError::Redrive`]; [`CliError::Differs`] with `--check`.
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    if args.log.is_some() && args.files.len() > 1 {
+        return Err(CliError::Usage(
+            "--log takes the run of one file; found several, give one".to_owned(),
+        ));
+    }
+    let options = RedriveOptions {
+        threads: usize::from(args.threads),
+        log: args.log.clone(),
+        particles_every: args.particles_every,
+    };
+    let mut different = Vec::new();
+    for file in &args.files {
+        let mut told = Instant::now();
+        let done = redrive(file, &options, &mut |time| {
+            if told.elapsed() > Duration::from_secs(5) {
+                told = Instant::now();
+                eprintln!("{}  t = {time:.3} s", file.display());
+            }
+        })?;
+        let line = verdict(file, &done);
+        if !done.is_same() && args.check {
+            different.push(line);
+        } else {
+            say(&line)?;
+        }
+    }
+    if different.is_empty() {
+        Ok(())
+    } else {
+        Err(CliError::Differs(different.join("\n")))
+    }
+}
+
+fn verdict(file: &Path, done: &Redriven) -> String {
+    let file = file.display();
+    let Redriven {
+        steps,
+        inputs,
+        compared,
+        ..
+    } = done;
+    if let Some(difference) = &done.difference {
+        let version = if done.version == env!("CARGO_PKG_VERSION") {
+            String::new()
+        } else {
+            format!(
+                "; the log is of version {}, this is {}",
+                done.version,
+                env!("CARGO_PKG_VERSION")
+            )
+        };
+        return format!("{file}: DIFFERS first at {difference}{version}");
+    }
+    let did = format!("{steps} steps with {inputs} inputs, {compared} messages");
+    if done.same_state == Some(false) {
+        return format!("{file}: DIFFERS: {did} are equal, but the state at the end is another");
+    }
+    let state = match done.same_state {
+        Some(_) => ", and the state at the end",
+        None => "",
+    };
+    match &done.ending {
+        Ending::Complete => format!("{file}: same bits: {did}{state}"),
+        Ending::Cut { damaged: false, .. } => {
+            format!("{file}: same bits up to its cut: {did}; {}", done.ending)
+        }
+        Ending::Cut { .. } => format!(
+            "{file}: DIFFERS: equal are {did}, but it is {}",
+            done.ending
+        ),
+    }
+}

@@ -1,0 +1,201 @@
+//! `sandgate log replay FILE`: the recorded messages on Zenoh again, byte for byte, at their simulated times.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+use super::Choice;
+use crate::bus::{Outlet, ServeOptions};
+use crate::cli::{CliError, say, stop};
+use crate::record::{RawEntry, RawMessage, RawReader, Survey, Topics, below_base};
+use crate::wire::keys;
+
+/// How long a wait may last without looking whether Ctrl-C was pressed.
+const LOOK_UP: Duration = Duration::from_millis(50);
+
+/// What may be typed after `sandgate log replay`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = AFTER_HELP)]
+pub(super) struct Args {
+    /// A log file
+    file: PathBuf,
+    /// Simulated over wall time, or inf for as fast as possible
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
+    speed: f64,
+    /// Begin again at the end, until Ctrl-C
+    #[arg(long = "loop")]
+    again: bool,
+    #[command(flatten)]
+    choice: Choice,
+    /// Name in keys [default: that of the log]
+    #[arg(long, value_name = "NAME")]
+    instance: Option<String>,
+    /// Publish although a live component has that name
+    #[arg(long)]
+    force: bool,
+    /// Wait until somebody subscribes
+    #[arg(long)]
+    wait: bool,
+    /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0]
+    #[arg(long, value_name = "ENDPOINT")]
+    listen: Vec<String>,
+    /// Connect to a router or peer at tcp/HOST:PORT; may be given more than once
+    #[arg(long, value_name = "ENDPOINT")]
+    connect: Vec<String>,
+    /// A configuration file of Zenoh (JSON5); scouting and admin space stay off whatever it says
+    #[arg(long, value_name = "FILE")]
+    zenoh_config: Option<PathBuf>,
+    /// Let other machines reach a listener
+    #[arg(long)]
+    allow_open_listener: bool,
+}
+
+const AFTER_HELP: &str = "\
+Published is what was published before: out/** (choose fewer with --topic). Calls are in the log, too, but nobody is
+asked again. With --from, the scene and the last frames before it come first, so that viewers have walls and gates.";
+
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(factor) if factor > 0.0 => Ok(factor),
+        _ => Err("allowed: a number above 0, or inf for as fast as possible".to_owned()),
+    }
+}
+
+/// Carries out `sandgate log replay`.
+///
+/// # Errors
+/// [`CliError::Read`], [`CliError::Bus`]; [`CliError::Content`] if nothing is there to publish.
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    let survey = Survey::of(&args.file)?;
+    let outputs = Topics::new(&["out/**".to_owned()]);
+    let wanted = args.choice.topics();
+    let wants = |topic: &str| outputs.has(topic) && wanted.has(topic);
+    let mut topics = survey
+        .channels
+        .iter()
+        .filter(|(t, c)| wants(t) && c.messages > 0);
+    let Some((topic, _)) = topics.next() else {
+        return Err(CliError::Content {
+            path: args.file.clone(),
+            problem: "no message has such a topic below out/".to_owned(),
+            remedy: "see its topics with `sandgate log info`",
+        });
+    };
+    let own = topic.split('/').nth(2).unwrap_or_default();
+    let options = ServeOptions {
+        instance: args.instance.clone().unwrap_or_else(|| own.to_owned()),
+        listen: args.listen.clone(),
+        connect: args.connect.clone(),
+        config_file: args.zenoh_config.clone(),
+        allow_open_listener: args.allow_open_listener,
+        realtime_factor: None,
+    };
+    let stop = stop::on_interrupt()?;
+    let outlet = Outlet::open(&options, args.force)?;
+    say(&format!(
+        "replaying {} as sandgate/v1/{}",
+        args.file.display(),
+        options.instance
+    ))?;
+    for listener in outlet.listeners() {
+        say(&format!("listening on {listener}"))?;
+    }
+    if args.wait {
+        outlet.wait_for_subscriber(&stop)?;
+    }
+    let base = keys::base(keys::ROOT, &options.instance).map_err(crate::bus::BusError::from)?;
+    let mut player = Player {
+        outlet,
+        base,
+        args,
+        stop: &stop,
+        published: 0,
+        latest: Duration::ZERO,
+        last: Duration::ZERO,
+    };
+    let began = Instant::now();
+    loop {
+        player.play(&wants)?;
+        if !args.again || stop.load(Relaxed) {
+            break;
+        }
+    }
+    say(&format!(
+        "published {} messages in {:.3} s, at most {:.3} ms late, the last one {:.3} ms",
+        player.published,
+        began.elapsed().as_secs_f64(),
+        player.latest.as_secs_f64() * 1e3,
+        player.last.as_secs_f64() * 1e3
+    ))?;
+    Ok(player.outlet.close()?)
+}
+
+struct Player<'a> {
+    outlet: Outlet,
+    base: String,
+    args: &'a Args,
+    stop: &'a AtomicBool,
+    published: u64,
+    /// How late a message was at most.
+    latest: Duration,
+    /// How late the last one was: the drift of the whole replay.
+    last: Duration,
+}
+
+impl Player<'_> {
+    /// The file once.
+    fn play(&mut self, wants: &dyn Fn(&str) -> bool) -> Result<(), CliError> {
+        let until = self.args.choice.window.span().1 * 1e9;
+        let mut began: Option<(Instant, u64)> = None;
+        for entry in RawReader::open(&self.args.file)? {
+            let RawEntry::Message(message) = entry? else {
+                continue;
+            };
+            if self.stop.load(Relaxed) || message.log_time as f64 > until.round() {
+                break;
+            }
+            if !wants(&message.channel.topic) {
+                continue;
+            }
+            if !self.args.choice.window.has(message.log_time) {
+                // Before the window: what viewers need to draw it.
+                let leaf = below_base(&message.channel.topic);
+                if matches!(leaf, "out/scene" | "out/frames") {
+                    self.publish(message)?;
+                }
+                continue;
+            }
+            let (start, first) = *began.get_or_insert((Instant::now(), message.log_time));
+            self.pace(start, message.log_time.saturating_sub(first));
+            self.publish(message)?;
+        }
+        Ok(())
+    }
+
+    /// Waits until `after` nanoseconds of simulated time have passed since `start`.
+    fn pace(&mut self, start: Instant, after: u64) {
+        let due = after as f64 * 1e-9 / self.args.speed;
+        if due == 0.0 {
+            return;
+        }
+        // Longer than any clock: such a replay never gets there.
+        let due = start + Duration::try_from_secs_f64(due).unwrap_or(Duration::from_secs(1 << 32));
+        loop {
+            let left = due.saturating_duration_since(Instant::now());
+            if left.is_zero() || self.stop.load(Relaxed) {
+                break;
+            }
+            std::thread::sleep(left.min(LOOK_UP));
+        }
+        self.last = due.elapsed();
+        self.latest = self.latest.max(self.last);
+    }
+
+    fn publish(&mut self, message: RawMessage) -> Result<(), CliError> {
+        let key = format!("{}/{}", self.base, below_base(&message.channel.topic));
+        let schema = &message.channel.schema.name;
+        self.outlet.publish(&key, schema, message.data)?;
+        self.published += 1;
+        Ok(())
+    }
+}

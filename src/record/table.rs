@@ -1,0 +1,216 @@
+//! The scalars of a log side by side: one row a communication point, the columns of the run's `gauges.csv`.
+
+use super::error::ReadError;
+use super::raw::{RawEntry, RawReader};
+use super::read::{Body, decode};
+use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
+use crate::scene;
+use crate::wire::messages::{Applied, Gauge};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// One scalar over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name in the table of variables; elements of arrays by themselves.
+    pub name: String,
+    /// SI unit; empty for whole numbers and flags.
+    pub unit: String,
+    /// Line for people.
+    pub description: String,
+    /// Whether it is an input: its value is the one that held over the step that ended at the row's time.
+    pub is_input: bool,
+    /// Whether it is a flag: 0 or 1, or the validity of a gauge.
+    pub is_flag: bool,
+    /// One value a row, SI; NaN where the log says nothing.
+    pub values: Vec<f64>,
+}
+
+/// All scalars of a log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Simulated time of each row [s].
+    pub time: Vec<f64>,
+    /// Communication steps done at each row.
+    pub step: Vec<u64>,
+    /// Inputs and outputs in the order of the table of variables.
+    pub columns: Vec<Column>,
+}
+
+/// Errors of [`Table::read`].
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// The log cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The log carries no scene, which says what its columns are.
+    #[error(
+        "log {path} has no attachment scene.toml, which says what its columns are; only logs of sandgate have it"
+    )]
+    NoScene {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The scene within the log is refused by this version.
+    #[error("the scene within the log is refused by this version: {0}")]
+    Scene(#[from] scene::SceneErrors),
+}
+
+impl Table {
+    /// Reads `path`: rows whose time is from `span.0` to `span.1` [s].
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn read(path: &Path, span: (f64, f64)) -> Result<Self, TableError> {
+        let mut builder: Option<Builder> = None;
+        for entry in RawReader::open(path)? {
+            match (entry?, &mut builder) {
+                (RawEntry::Attachment { name, data, .. }, none @ None) if name == "scene.toml" => {
+                    let scene = scene::parse("scene.toml", &String::from_utf8_lossy(&data))?;
+                    *none = Some(Builder::new(scene, span));
+                }
+                (RawEntry::Attachment { name, data, .. }, Some(builder))
+                    if name == "start.state" =>
+                {
+                    builder.begin_at(&data);
+                }
+                (RawEntry::Message(message), Some(builder)) => {
+                    match message.channel.schema.name.as_str() {
+                        // The large ones are not looked into.
+                        "sandgate.Gauge" | "sandgate.Applied" | "sandgate.StepStats" => {
+                            builder.add(decode(path, &message)?);
+                        }
+                        _ => {}
+                    }
+                }
+                _ => {}
+            }
+        }
+        builder
+            .map(|builder| builder.table)
+            .ok_or_else(|| TableError::NoScene {
+                path: path.to_owned(),
+            })
+    }
+
+    /// A column by name.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+}
+
+struct Builder {
+    scene: scene::Scene,
+    table: Table,
+    /// Columns of a variable: one, or one each element.
+    places: HashMap<String, Vec<usize>>,
+    /// The row being filled.
+    row: Vec<f64>,
+    span: (f64, f64),
+}
+
+impl Builder {
+    fn new(scene: scene::Scene, span: (f64, f64)) -> Self {
+        let variables = VariableTable::of(&scene);
+        let mut places: HashMap<String, Vec<usize>> = HashMap::new();
+        let (mut columns, mut row) = (Vec::new(), Vec::new());
+        let scalars = variables
+            .rows()
+            .iter()
+            .filter(|v| matches!(v.causality, Causality::Input | Causality::Output))
+            .filter(|v| v.shape.is_empty());
+        for variable in scalars {
+            let own = match variable.element_of {
+                None => Some(variable),
+                Some((array, _)) => variables.by_reference(array),
+            };
+            if let Some(own) = own {
+                let list = places.entry(own.name.clone()).or_default();
+                list.push(columns.len());
+            }
+            row.push(match &variable.start {
+                Start::Exact(values) => values.first().copied(),
+                Start::Calculated => None,
+            });
+            columns.push(Column {
+                name: variable.name.clone(),
+                unit: variable.unit.to_owned(),
+                description: variable.description.clone(),
+                is_input: variable.causality == Causality::Input,
+                is_flag: variable.kind == ValueKind::Boolean
+                    || variable.name.ends_with(".validity"),
+                values: Vec::new(),
+            });
+        }
+        Self {
+            scene,
+            table: Table {
+                columns,
+                ..Table::default()
+            },
+            places,
+            row: row.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect(),
+            span,
+        }
+    }
+
+    /// Inputs are those of a saved state. One that does not fit leaves them as nobody knows them.
+    fn begin_at(&mut self, state: &[u8]) {
+        let component = Component::new(&self.scene).and_then(|mut component| {
+            component.restore(state)?;
+            Ok(component)
+        });
+        for (column, value) in self.table.columns.iter().zip(&mut self.row) {
+            if !column.is_input {
+                continue;
+            }
+            *value = f64::NAN;
+            if let Ok(component) = &component
+                && let Some(variable) = component.variables().by_name(&column.name)
+            {
+                let mut own = [f64::NAN];
+                // Refused only for arrays, which a column is not.
+                if component.get(&[variable.reference], &mut own).is_ok() {
+                    *value = own[0];
+                }
+            }
+        }
+    }
+
+    fn add(&mut self, body: Body) {
+        match body {
+            Body::Applied(applied) => self.inputs(&applied),
+            Body::Gauge(gauge) => self.gauge(&gauge),
+            // Comes after all outputs of its point.
+            Body::Stats(stats) if (self.span.0..=self.span.1).contains(&stats.time) => {
+                self.table.time.push(stats.time);
+                self.table.step.push(stats.step);
+                for (column, value) in self.table.columns.iter_mut().zip(&self.row) {
+                    column.values.push(*value);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn inputs(&mut self, applied: &Applied) {
+        for input in &applied.inputs {
+            self.put(&input.name, &input.values);
+        }
+    }
+
+    fn gauge(&mut self, gauge: &Gauge) {
+        self.put(&gauge.name, &gauge.values);
+        if let Some((device, _)) = gauge.name.rsplit_once('.') {
+            self.put(&format!("{device}.validity"), &[f64::from(gauge.validity)]);
+        }
+    }
+
+    fn put(&mut self, name: &str, values: &[f64]) {
+        let places = self.places.get(name).map_or(&[][..], Vec::as_slice);
+        for (&place, &value) in places.iter().zip(values) {
+            self.row[place] = value;
+        }
+    }
+}

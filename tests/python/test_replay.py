@@ -1,0 +1,185 @@
+"""Logs of what clients did run again with the same bits, and logs are replayed byte for byte.
+
+SANDGATE is the program, SANDGATE_ROOT the source tree, SANDGATE_LOG the log of a run of the small silo.
+"""
+
+import json
+import os
+import pathlib
+import queue
+import random
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+import zenoh
+from mcap.reader import make_reader
+
+ROOT = pathlib.Path(os.environ["SANDGATE_ROOT"])
+LOG = os.environ["SANDGATE_LOG"]
+BASE = "sandgate/v1/small_silo"
+
+sys.path.insert(0, str(ROOT / "examples"))
+from bus_client import Component, open_session  # noqa: E402
+
+
+def start(*arguments):
+    """The program and the endpoint that it printed."""
+    command = [os.environ["SANDGATE"], *map(str, arguments)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    for line in process.stdout:
+        if line.startswith("listening on "):
+            return process, line.split()[-1]
+    raise AssertionError(f"{command}: {process.stderr.read()}")
+
+
+def end(process):
+    process.send_signal(signal.SIGINT)
+    try:
+        return process.communicate(timeout=60)
+    finally:
+        process.kill()
+
+
+def check(*paths):
+    command = [os.environ["SANDGATE"], "log", "redrive", "--check", "--threads", "1", *map(str, paths)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120)
+
+
+@pytest.mark.parametrize(
+    "scene, inputs",
+    [
+        ("small_silo", {"gate.main.opening": 1.0}),
+        ("devices", {"gate.sluice.opening": 1.0, "inflow.feed.rate": 0.3}),
+        ("devices_3d", None),
+    ],
+)
+def test_what_clients_did_at_random_runs_again(tmp_path, scene, inputs):
+    """Set-points, requests, free running, a state that is restored and a reset: every file runs again by itself."""
+    log = tmp_path / "served.mcap"
+    scene_file = ROOT / f"tests/scenes/{scene}.toml"
+    process, endpoint = start("serve", scene_file, "--threads", "1", "--log", log)
+    dice = random.Random(7)
+    with open_session(endpoint) as session:
+        served = Component(session, scene)
+        variables = served.ask("describe")["variables"]
+        if inputs is None:
+            inputs = {v["name"]: v.get("max") or 0.1 for v in variables if v["causality"] == "input"}
+        else:
+            assert set(inputs) == {v["name"] for v in variables if v["causality"] == "input"}
+
+        def drive(rounds):
+            for _ in range(rounds):
+                for name, largest in inputs.items():
+                    value = dice.uniform(0, largest)
+                    if dice.random() < 0.5:
+                        session.put(f"sandgate/v1/{scene}/in/{name}", json.dumps({"value": value, "client": "dice"}))
+                    else:
+                        served.ask("set", inputs={name: value})
+                served.ask("step", dt_ns=dice.randrange(200_000, 2_000_000))
+
+        drive(5)
+        state = served.ask("save")["state"]
+        drive(3)
+        served.ask("restore", state=state)
+        drive(3)
+        served.ask("run", realtime_factor=1000.0)
+        for _ in range(5):
+            name, largest = dice.choice(list(inputs.items()))
+            session.put(f"sandgate/v1/{scene}/in/{name}", json.dumps(dice.uniform(0, largest)))
+            time.sleep(0.02)
+        served.ask("pause")
+        served.ask("reset")
+        drive(3)
+        # Set, but no step uses it any more.
+        served.ask("set", inputs={name: largest})
+        served.ask("terminate")
+    process.communicate(timeout=60)
+    files = sorted(tmp_path.glob("*.mcap"))
+    assert len(files) == 3
+    done = check(*files)
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert len(lines) == 3 and all("same bits" in line for line in lines), done.stdout
+    assert "and the state at the end" in done.stdout
+
+
+def recorded():
+    """The messages below out/ by topic, as bytes."""
+    topics = {}
+    with open(LOG, "rb") as stream:
+        for schema, channel, message in make_reader(stream).iter_messages(log_time_order=False):
+            if "/out/" in channel.topic:
+                topics.setdefault(channel.topic, []).append((schema.name, message.data))
+    return topics
+
+
+def replay(*arguments, base=BASE):
+    """What a subscriber gets of a replay, by topic, and what the program said."""
+    process, endpoint = start("log", "replay", LOG, "--wait", *arguments)
+    arrived = queue.Queue()
+    with open_session(endpoint) as session:
+        subscriber = session.declare_subscriber(f"{base}/out/**", arrived.put)
+        out, err = process.communicate(timeout=120)
+        assert process.returncode == 0, err
+        subscriber.undeclare()
+    topics = {}
+    while not arrived.empty():
+        sample = arrived.get()
+        encoding = str(sample.encoding)
+        assert encoding.startswith("application/protobuf;")
+        topics.setdefault(str(sample.key_expr), []).append((encoding.split(";")[1], sample.payload.to_bytes()))
+    return topics, out
+
+
+def test_a_replay_is_what_was_recorded_byte_for_byte():
+    topics, out = replay("--speed", "inf")
+    assert topics == recorded()
+    assert f"published {sum(map(len, topics.values()))} messages" in out
+
+
+def test_a_replay_keeps_its_time_and_its_window():
+    began = time.monotonic()
+    topics, out = replay("--speed", "0.5", "--topic", "out/gauge/*", "--from", "50 ms", "--until", "150 ms")
+    assert time.monotonic() - began > 0.2
+    gauges = {topic: messages for topic, messages in recorded().items() if "/out/gauge/" in topic}
+    assert topics == {topic: messages[10:31] for topic, messages in gauges.items()}
+    took, late = map(float, re.search(r"in (\S+) s, at most (\S+) ms late", out).groups())
+    # Half of real time, to the last message; how late it may be is a matter for a quiet machine (docs/logs.md).
+    assert took >= 0.2 and late < 1000
+
+
+def test_a_replay_can_have_another_name_and_go_round():
+    process, endpoint = start("log", "replay", LOG, "--speed", "inf", "--loop", "--wait", "--instance", "ghost")
+    with open_session(endpoint) as session:
+        arrived = queue.Queue()
+        subscriber = session.declare_subscriber("sandgate/v1/ghost/out/stats", arrived.put)
+        count = len(recorded()[f"{BASE}/out/stats"])
+        first = arrived.get(timeout=60).payload.to_bytes()
+        for _ in range(2 * count - 1):
+            last = arrived.get(timeout=60)
+        # The first one again after so many: it begins anew.
+        again = [arrived.get(timeout=60).payload.to_bytes() for _ in range(count)]
+        assert first in again and last is not None
+        late = session.get("sandgate/v1/ghost/out/scene", timeout=20.0)
+        assert [str(reply.ok.key_expr) for reply in late] == ["sandgate/v1/ghost/out/scene"]
+        subscriber.undeclare()
+    out, _ = end(process)
+    assert "published" in out
+
+
+def test_a_replay_never_speaks_for_a_live_component():
+    process, endpoint = start("serve", ROOT / "tests/scenes/small_silo.toml", "--threads", "1")
+    try:
+        command = [os.environ["SANDGATE"], "log", "replay", LOG, "--speed", "inf", "--connect", endpoint]
+        refused = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        assert refused.returncode == 6 and "small_silo" in refused.stderr, refused
+        forced = subprocess.run([*command, "--force"], capture_output=True, text=True, timeout=60)
+        assert forced.returncode == 0, forced.stderr
+        other = subprocess.run([*command, "--instance", "other"], capture_output=True, text=True, timeout=60)
+        assert other.returncode == 0, other.stderr
+    finally:
+        end(process)
