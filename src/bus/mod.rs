@@ -27,6 +27,7 @@ mod status;
 mod stepping;
 mod values;
 mod verb;
+mod watch;
 
 pub use answered::REMEMBERED;
 pub use endpoints::{BadEndpoint, DEFAULT_LISTEN};
@@ -40,3 +41,4 @@ pub use serve::{Outlet, ServeOptions, Server};
 pub use set_point::SetPoint;
 pub use status::Status;
 pub use verb::Verb;
+pub use watch::{Lost, WhenLost};

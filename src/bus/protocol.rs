@@ -75,6 +75,11 @@ impl Protocol {
         self.free_running
     }
 
+    /// Steps by itself from now on, at `factor` of simulated over wall time.
+    pub(super) fn run_freely(&mut self, factor: f64) {
+        self.free_running = Some(factor);
+    }
+
     /// Counts resets and restores.
     #[must_use]
     pub fn epoch(&self) -> u64 {

@@ -4,7 +4,7 @@
 use super::json::number;
 use crate::component::{Component, MassLedger, Mode, Statistics};
 use serde_json::{Map, Value, json};
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Where the component stood after its last call.
@@ -112,6 +112,8 @@ pub(super) struct Shared {
     pub(super) dropped_publications: AtomicU64,
     /// Calls that did not get into the log because the stepping thread was behind.
     pub(super) unlogged_calls: AtomicU64,
+    /// Whether the orchestrator has been silent for too long.
+    pub(super) orchestrator_lost: AtomicBool,
 }
 
 /// A call that is being carried out.
@@ -134,6 +136,7 @@ impl Shared {
             refused_set_points: AtomicU64::new(0),
             dropped_publications: AtomicU64::new(0),
             unlogged_calls: AtomicU64::new(0),
+            orchestrator_lost: AtomicBool::new(false),
         }
     }
 
@@ -167,6 +170,8 @@ impl Shared {
         ] {
             map.insert(name.into(), counter.load(Relaxed).into());
         }
+        let lost = self.orchestrator_lost.load(Relaxed);
+        map.insert("orchestrator_lost".into(), lost.into());
         map
     }
 }

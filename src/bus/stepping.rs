@@ -8,6 +8,7 @@ use super::reply::Reply;
 use super::request::Request;
 use super::set_point::SetPoint;
 use super::status::{Busy, Shared};
+use super::watch::{Lost, Watch, WhenLost};
 use crate::component::Component;
 use crate::wire::Observer;
 use crate::wire::convert::timestamp;
@@ -69,6 +70,7 @@ pub(super) struct Stepper<'a> {
     pub(super) shared: &'a Shared,
     pub(super) tasks: Receiver<Task>,
     pub(super) notes: Receiver<Note>,
+    pub(super) watch: Watch,
 }
 
 impl Stepper<'_> {
@@ -107,6 +109,11 @@ impl Stepper<'_> {
                         .is_some_and(|p| p.wait(self.component.time()).is_zero());
                     if due {
                         self.free_step(observer);
+                    } else if pace.is_none()
+                        && let Some(lost) = self.watch.due()
+                        && self.lose(lost, observer)
+                    {
+                        break;
                     }
                 }
             }
@@ -154,6 +161,10 @@ impl Stepper<'_> {
                 exchange.status = reply.status();
                 exchange.reply.clone_from(&reply.body);
                 let ends = reply.ends;
+                if request.verb.changes() {
+                    self.watch.hear();
+                    self.shared.orchestrator_lost.store(false, Relaxed);
+                }
                 // The status is there before the reply, so that who has the reply reads a status that knows of it.
                 self.publish_status();
                 self.shared.set_busy(None);
@@ -162,6 +173,31 @@ impl Stepper<'_> {
                 ends
             }
         }
+    }
+
+    /// The orchestrator is silent: tells so and does what was wished. Whether the server ends.
+    fn lose(&mut self, lost: Lost, observer: &mut dyn Observer) -> bool {
+        let what = match lost.then {
+            WhenLost::Hold => "the component waits as it is",
+            WhenLost::Continue => {
+                "the component steps by itself at real time until somebody sends pause"
+            }
+            WhenLost::Terminate => "the component is terminated",
+        };
+        let silence = lost.after.as_secs_f64();
+        let text = format!("orchestrator lost: no request for {silence} s; {what}");
+        self.shared.orchestrator_lost.store(true, Relaxed);
+        self.warn(&text, observer);
+        match lost.then {
+            WhenLost::Hold => {}
+            WhenLost::Continue => self.protocol.run_freely(1.0),
+            WhenLost::Terminate => {
+                // Refused only if it has ended or failed already; the server ends in any case.
+                let _ = self.component.terminate();
+            }
+        }
+        self.publish_status();
+        lost.then == WhenLost::Terminate
     }
 
     fn free_step(&mut self, observer: &mut dyn Observer) {

@@ -5,9 +5,10 @@ mod log;
 
 use std::io::Write as _;
 use std::path::PathBuf;
+use std::time::Duration;
 
-use super::{CliError, load_scene, say, stop};
-use crate::bus::{ServeOptions, Server};
+use super::{CliError, load_scene, quantity, say, stop};
+use crate::bus::{Lost, ServeOptions, Server, WhenLost};
 use crate::component::{Component, Mode};
 use crate::wire::{Observer, Unobserved};
 use log::Log;
@@ -36,12 +37,29 @@ pub(super) struct Args {
     /// Step without being asked: simulated over wall time, such as 1, or inf for as fast as possible
     #[arg(long, value_name = "FACTOR", value_parser = realtime_factor)]
     realtime_factor: Option<f64>,
+    /// Count whoever steps it as lost after so long without a request, "10 s" or plain seconds
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time)]
+    lost_after: Option<f64>,
+    /// What to do then
+    #[arg(long, value_enum, default_value = "hold", requires = "lost_after")]
+    when_lost: Then,
     /// Log all traffic to a new MCAP file; a reset or restore goes on in FILE-1-0000, ...
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     /// Threads to compute with; 0 means all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
     threads: u16,
+}
+
+/// What to do without an orchestrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Then {
+    /// wait as it is
+    Hold,
+    /// step by itself at real time until somebody sends pause
+    Continue,
+    /// end the component and the program
+    Terminate,
 }
 
 const AFTER_HELP: &str = "\
@@ -74,6 +92,15 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         config_file: args.zenoh_config.clone(),
         allow_open_listener: args.allow_open_listener,
         realtime_factor: args.realtime_factor,
+        lost: args.lost_after.map(|seconds| Lost {
+            // Longer than any clock is never.
+            after: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
+            then: match args.when_lost {
+                Then::Hold => WhenLost::Hold,
+                Then::Continue => WhenLost::Continue,
+                Then::Terminate => WhenLost::Terminate,
+            },
+        }),
     };
     let mut component = Component::new(&scene)?;
     component.set_threads(usize::from(args.threads));
@@ -96,6 +123,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     announce(&server, &options)?;
     let (component, closed) = server.run(observer, &stop);
     let why = match component.mode() {
+        Mode::Terminated if args.when_lost == Then::Terminate => "terminated",
         Mode::Terminated => "terminated by a client",
         _ => "stopped",
     };

@@ -618,3 +618,9 @@ fn python_clients_watch_and_drive_a_served_silo() {
     let program = env!("CARGO_BIN_EXE_sandgate");
     python::pytest("test_bus.py", &[("SANDGATE", OsStr::new(program))]);
 }
+
+#[test]
+fn the_examples_do_what_they_say() {
+    let program = env!("CARGO_BIN_EXE_sandgate");
+    python::pytest("test_examples.py", &[("SANDGATE", OsStr::new(program))]);
+}

@@ -418,6 +418,38 @@ def test_terminate_ends_the_program():
         assert "terminated by a client at t = 0 s after 0 communication steps" in out
 
 
+def test_an_orchestrator_that_falls_silent_is_noticed():
+    with served("--lost-after", "0.5 s") as (_, session, silo):
+        subscriber, told = subscribe(session, f"{BASE}/out/log")
+        time.sleep(0.7)
+        # Nobody has driven it yet, so nobody is lost.
+        assert told.empty() and silo.ask("status")["orchestrator_lost"] is False
+        step = silo.ask("step")["step"]
+        until(lambda: silo.ask("status")["orchestrator_lost"])
+        line = told.get(timeout=20).payload.to_bytes()
+        assert b"orchestrator lost: no request for 0.5 s; the component waits" in line
+        assert silo.ask("status")["step"] == step
+        assert silo.ask("step")["step"] == step + 1
+        assert silo.ask("status")["orchestrator_lost"] is False
+        subscriber.undeclare()
+
+
+def test_a_component_goes_on_without_its_orchestrator():
+    with served("--lost-after", "0.3 s", "--when-lost", "continue") as (_, _, silo):
+        step = silo.ask("step")["step"]
+        until(lambda: silo.ask("status")["step"] > step + 3)
+        assert silo.ask("status")["realtime_factor"] == 1.0
+        paused = silo.ask("pause")["step"]
+        assert silo.ask("step")["step"] == paused + 1
+
+
+def test_a_component_ends_without_its_orchestrator():
+    with served("--lost-after", "0.3 s", "--when-lost", "terminate") as (server, _, silo):
+        silo.ask("step")
+        out, _ = server.process.communicate(timeout=60)
+        assert "terminated at t = 0.005 s after 1 communication steps" in out and server.process.returncode == 0
+
+
 def test_everybody_who_waits_is_answered_when_the_program_ends():
     with served() as (server, session, silo):
         answers = queue.Queue()

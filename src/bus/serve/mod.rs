@@ -21,6 +21,7 @@ use super::protocol::Protocol;
 use super::publish::{LastValues, Publisher, WAITING_BATCHES};
 use super::status::Shared;
 use super::stepping::{Note, Stepper, Task, WAITING_NOTES, WAITING_TASKS};
+use super::watch::{Lost, Watch};
 use crate::component::Component;
 use crate::wire::{Both, Observer};
 use std::path::PathBuf;
@@ -48,6 +49,8 @@ pub struct ServeOptions {
     pub allow_open_listener: bool,
     /// Simulated over wall time to step by itself (infinite: as fast as possible); none to wait for `step`.
     pub realtime_factor: Option<f64>,
+    /// When the one who steps it counts as lost; none: never.
+    pub lost: Option<Lost>,
 }
 
 /// An open server.
@@ -60,6 +63,7 @@ pub struct Server {
     shared: Arc<Shared>,
     tasks: Receiver<Task>,
     notes: Receiver<Note>,
+    watch: Watch,
     entrances: Entrances,
     threads: Vec<JoinHandle<()>>,
 }
@@ -119,6 +123,7 @@ impl Server {
             shared,
             tasks,
             notes,
+            watch: Watch::new(options.lost),
             threads,
         })
     }
@@ -142,6 +147,7 @@ impl Server {
             shared: &self.shared,
             tasks: self.tasks,
             notes: self.notes,
+            watch: self.watch,
         };
         stepper.run(&mut Both(observer, &mut self.publisher), stop);
         // Nobody gets in any more; who still waits is answered as the queue is dropped; then the queues of the two

@@ -89,6 +89,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         config_file: args.zenoh_config.clone(),
         allow_open_listener: args.allow_open_listener,
         realtime_factor: None,
+        lost: None,
     };
     let stop = stop::on_interrupt()?;
     let outlet = Outlet::open(&options, args.force)?;

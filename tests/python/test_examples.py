@@ -1,0 +1,68 @@
+"""The example clients on served scenes: SANDGATE is the program, SANDGATE_ROOT the source tree."""
+
+import os
+import pathlib
+import re
+import signal
+import struct
+import subprocess
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(os.environ["SANDGATE_ROOT"])
+
+
+@pytest.fixture
+def serve():
+    """Starts servers and ends them."""
+    processes = []
+
+    def start(scene, *arguments):
+        command = [os.environ["SANDGATE"], "serve", str(ROOT / f"tests/scenes/{scene}.toml"), "--threads", "1", *arguments]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        processes.append(process)
+        for line in process.stdout:
+            if line.startswith("listening on "):
+                return line.split()[-1]
+        raise AssertionError(process.stderr.read())
+
+    yield start
+    for process in processes:
+        process.send_signal(signal.SIGINT)
+        try:
+            process.communicate(timeout=60)
+        finally:
+            process.kill()
+
+
+def example(name, *arguments):
+    command = [sys.executable, str(ROOT / "examples" / name), *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_two_components_are_stepped_against_each_other(serve, tmp_path):
+    logs = [tmp_path / "upper.mcap", tmp_path / "lower.mcap"]
+    upper, lower = serve("small_silo", "--log", str(logs[0])), serve("devices", "--log", str(logs[1]))
+    out = example("orchestrator.py", upper, "small_silo", lower, "devices", "--steps", 40)
+    assert len(re.findall(r"^t = ", out, re.M)) == 4, out
+    left = float(re.search(r"small_silo: (\S+) kg out, account off by 0.0 kg", out)[1])
+    entered, asked, cut = map(float, re.search(r"devices: (\S+) kg in of (\S+) kg asked for, (\S+) kg", out).groups())
+    assert left > 0.5 and asked > 0
+    # What was asked for is what left one step earlier: all but what left in the last step.
+    assert asked + cut <= left + 1e-3
+    assert asked + cut >= 0.8 * left
+    # An inflow lets in whole particles (5 mm x 5 mm x 50 mm of 1.5 t/m3), a layer of four at a time, and waits for room.
+    assert 0 <= asked - entered < 2 * 4 * 0.0019
+
+
+def test_gauges_are_plotted_as_they_arrive(serve, tmp_path):
+    endpoint = serve("small_silo", "--realtime-factor", "0.2")
+    picture = tmp_path / "plot.png"
+    out = example("live_plot.py", endpoint, "small_silo", "--seconds", 3, "--output", picture)
+    values, gauges, lost = map(int, re.findall(r"\d+", out))
+    assert gauges == 5 and values > 5 * 20 and lost == 0, out
+    data = picture.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", data[16:24]) == (1080, 840)
