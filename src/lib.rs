@@ -44,6 +44,8 @@ pub mod material;
 pub mod math;
 #[cfg(feature = "record")]
 pub mod record;
+#[cfg(feature = "cli")]
+pub mod report;
 pub mod scene;
 pub mod shape;
 pub mod solver;

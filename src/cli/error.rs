@@ -8,6 +8,7 @@ use crate::bus::BusError;
 use crate::component;
 use crate::fmi;
 use crate::record::{ReadError, RecordError, RecoverError, RedriveError, TableError};
+use crate::report::ReportError;
 use crate::scene::SceneErrors;
 use crate::validate;
 
@@ -60,6 +61,9 @@ pub enum CliError {
     /// The scalars of a log cannot be read.
     #[error("error: {0}")]
     Table(#[from] TableError),
+    /// A page cannot be made of a log.
+    #[error("error: {0}")]
+    Report(#[from] ReportError),
     /// A check found a difference; the text says where.
     #[error("{0}")]
     Differs(String),
@@ -113,6 +117,8 @@ impl CliError {
             Self::Bench(_) => 5,
             Self::Validate(_) => 1,
             Self::Redrive(RedriveError::Scene(_)) | Self::Table(TableError::Scene(_)) => 3,
+            Self::Report(ReportError::Table(TableError::Scene(_))) => 3,
+            Self::Report(_) => 5,
             Self::Redrive(RedriveError::Component(error)) => error.status().exit_code,
             Self::Log(_) | Self::Read(_) | Self::Recover(_) | Self::Redrive(_) | Self::Table(_) => {
                 5

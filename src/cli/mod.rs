@@ -16,6 +16,7 @@ mod fmu;
 mod info;
 mod log;
 mod quantity;
+mod report;
 mod run;
 mod schema;
 #[cfg(feature = "bus")]
@@ -55,6 +56,8 @@ enum Command {
     Serve(serve::Args),
     /// Look into logs, run them again, replay, recover and export them
     Log(log::Args),
+    /// Make one page for a browser of a log: gauges, mass, solver, particles
+    Report(report::Args),
     /// Compare runs with published data and exact solutions, and write docs/validation
     Validate(validate::Args),
     /// Time the solver and whole scenes, and write docs/performance.md
@@ -92,6 +95,7 @@ fn dispatch(command: &Command) -> Result<(), CliError> {
         #[cfg(feature = "bus")]
         Command::Serve(args) => serve::run(args),
         Command::Log(args) => log::run(args),
+        Command::Report(args) => report::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Schema(args) => schema::run(args),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Ranks of ARCHITECTURE.md. A module uses modules of lower rank, and of its own rank only itself.
-const RANKS: [(&str, u8); 19] = [
+const RANKS: [(&str, u8); 20] = [
     ("math", 0),
     ("units", 0),
     ("kernel", 1),
@@ -21,6 +21,7 @@ const RANKS: [(&str, u8); 19] = [
     ("fmi", 8),
     ("record", 8),
     ("bus", 8),
+    ("report", 9),
     ("validate", 9),
     ("bench", 10),
     ("cli", 11),

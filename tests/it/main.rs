@@ -30,6 +30,8 @@ mod physics;
 mod python;
 #[cfg(all(feature = "record", feature = "cli"))]
 mod record;
+#[cfg(feature = "cli")]
+mod report;
 mod scenes;
 mod shared_library;
 mod states;

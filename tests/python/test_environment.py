@@ -7,7 +7,7 @@ import pytest
 
 NAMES = ["fmpy", "mcap.reader", "mcap_protobuf.decoder", "zenoh", "rerun", "numpy"]
 NAMES += ["libcosimpy", "fmu_manipulation_toolbox", "pythonfmu.builder", "pythonfmu3.builder"]
-NAMES += ["dask.distributed", "pyarrow.parquet"]
+NAMES += ["dask.distributed", "pyarrow.parquet", "matplotlib.pyplot", "playwright.sync_api"]
 
 
 @pytest.mark.parametrize("name", NAMES)
