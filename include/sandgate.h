@@ -121,7 +121,7 @@ typedef enum sandgate_capability {
 /*
  * Gets what an instance has to say, during a call on it and from that call's thread. `user` is the pointer given to
  * sandgate_set_logger. `category` is "logStatusError" for refused and failed calls, or another of the categories that
- * fmu/README.md lists. Both texts stay until the logger returns. It must return, and must not call the same instance.
+ * docs/c.md lists. Both texts stay until the logger returns. It must return, and must not call the same instance.
  */
 typedef void (*sandgate_logger)(void *user, const char *category, const char *message);
 
@@ -219,7 +219,7 @@ int32_t sandgate_reset(sandgate_instance *instance);
 /* Ends the simulation: values can still be read. */
 int32_t sandgate_terminate(sandgate_instance *instance);
 
-/* Threads of the sweeps; 0 means all cores. Results do not depend on it. */
+/* Threads of the sweeps, at most 256; 0 means all cores. Results do not depend on it. */
 int32_t sandgate_set_threads(sandgate_instance *instance, uint32_t threads);
 
 /*

@@ -14,6 +14,10 @@ use crate::instance::Instance;
 use crate::log::{Log, Sink, text};
 
 const ABI_VERSION: u32 = 1;
+/// Digits of a hash.
+const HASH: usize = 64;
+/// What `solver.threads` allows too.
+const MOST_THREADS: u32 = 256;
 
 /// `sandgate_capability`: bits of what this library can do. All five are always there; what a build may leave out gets
 /// the next bits.
@@ -87,8 +91,13 @@ fn create(
         Err(how) => format!("broke down ({how})"),
     };
     if error_size > 0 {
-        let mut bytes = reason.replace('\0', " ").into_bytes();
-        bytes.truncate(error_size - 1);
+        let reason = reason.replace('\0', " ");
+        // Not in the middle of a character.
+        let mut end = reason.len().min(error_size - 1);
+        while !reason.is_char_boundary(end) {
+            end -= 1;
+        }
+        let mut bytes = reason.as_bytes()[..end].to_vec();
         bytes.push(0);
         // NULL with a size is a caller's mistake, but there is nobody else to tell.
         let _ = error.write(&bytes, "error");
@@ -387,6 +396,11 @@ pub(crate) extern "C" fn sandgate_terminate(instance: Handle) -> i32 {
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn sandgate_set_threads(instance: Handle, threads: u32) -> i32 {
     code(instance.call("sandgate_set_threads", Need::Sound, |i| {
+        if threads > MOST_THREADS {
+            return Err(Fault::border(format!(
+                "found {threads} threads, allowed 0 (all cores) to {MOST_THREADS}"
+            )));
+        }
         i.set_threads(threads as usize);
         Ok(())
     }))
@@ -396,6 +410,10 @@ pub(crate) extern "C" fn sandgate_set_threads(instance: Handle, threads: u32) ->
 pub(crate) extern "C" fn sandgate_state_hash(instance: Handle, mut hash: Out<u8>) -> i32 {
     code(instance.call("sandgate_state_hash", Need::Sound, |i| {
         let text = text(&i.component.state_hash());
+        if text.as_bytes().len() != HASH {
+            // The caller's buffer holds a hash and no more.
+            return Err(Fault::border(text.to_string_lossy().into_owned()));
+        }
         hash.write(text.as_bytes_with_nul(), "hash")
     }))
 }

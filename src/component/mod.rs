@@ -233,10 +233,13 @@ impl Component {
     /// `enter_initialization` and `exit_initialization` in one.
     ///
     /// # Errors
-    /// As these.
+    /// As these; nothing is changed then.
     pub fn initialize(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
+        let before = (self.life.mode, self.life.time, self.life.stop);
         self.enter_initialization(start, stop)?;
-        self.exit_initialization()
+        self.exit_initialization().inspect_err(|_| {
+            (self.life.mode, self.life.time, self.life.stop) = before;
+        })
     }
 
     /// Everything that can change a later bit, as bytes: versioned header, scene fingerprint, checksum. Allowed in

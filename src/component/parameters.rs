@@ -50,10 +50,11 @@ impl Component {
     /// Goes to a saved state. `engine` is empty if its parameters waited for their engine.
     pub(super) fn take_over(&mut self, life: Life, engine: &[u8]) -> Result<(), Error> {
         if engine.is_empty() {
-            // The engine of the start, whatever its parameters: `settle` builds the one that is wanted.
+            // The engine of the start; `settle` builds the one that is wanted, also where that is the start's: outputs
+            // may be those of other parameters.
             let start: Vec<f64> = self.base.adjustables.iter().map(|a| a.start).collect();
             (self.scene, self.engine) = self.build_for(&start)?;
-            self.built = start;
+            self.built.clear();
         } else if same_bits(&life.parameters, &self.built) {
             self.engine.restore(engine).map_err(Error::Snapshot)?;
         } else {

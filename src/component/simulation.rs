@@ -27,8 +27,8 @@ struct Simulation<const D: usize> {
     sampler: Sampler<D>,
     /// Readings of a scene that sleeps: they do not change until it wakes.
     still: OnceLock<Vec<Reading>>,
-    /// Whether the scene slept when the communication step began.
-    slept: bool,
+    /// Internal steps done when the communication step began, if the scene slept then.
+    slept_at: Option<u64>,
     devices: Devices,
     walls: usize,
     spacing: f64,
@@ -62,7 +62,7 @@ impl<const D: usize> Simulation<D> {
             solver,
             sampler: Sampler::new(scene),
             still: OnceLock::new(),
-            slept: false,
+            slept_at: None,
             devices: Devices::default(),
             walls: scene.walls.len(),
             spacing: scene.numerics.spacing,
@@ -147,7 +147,8 @@ impl<const D: usize> Simulation<D> {
 
     /// Internal steps happened: what was read before them is stale.
     fn refresh(&mut self) {
-        if !(self.slept && self.state.rest.asleep) {
+        // A scene that woke and fell asleep again has done steps; sleeping does none.
+        if self.slept_at != Some(self.state.steps) {
             self.still = OnceLock::new();
         }
         self.refresh_devices();
@@ -200,7 +201,7 @@ impl<const D: usize> Engine for Simulation<D> {
 
     fn begin(&mut self, start: f64, inputs: &Inputs) {
         self.sampler.begin_step();
-        self.slept = self.state.rest.asleep;
+        self.slept_at = self.state.rest.asleep.then_some(self.state.steps);
         for impulse in &mut self.state.impulse {
             *impulse = [0.0; D];
         }

@@ -55,6 +55,19 @@ pub(crate) fn parameters_count_whenever_they_are_set(stage: &Stage) {
     before.restore(&early).unwrap();
     start(before.as_mut(), None, None);
     assert!(stage.everything(before.as_mut()) == finer);
+
+    // And one whose outputs were read with other parameters than those it was saved with.
+    let (mut back, mut plain) = (stage.instance(), stage.instance());
+    back.set(&scale, &[FINER]).unwrap();
+    particles(back.as_mut());
+    back.set(&scale, &[1.0]).unwrap();
+    let early = back.save().unwrap();
+    before.restore(&early).unwrap();
+    for driver in [&mut before, &mut plain] {
+        driver.enter_initialization(0.0, None).unwrap();
+        driver.exit_initialization().unwrap();
+    }
+    assert!(stage.everything(before.as_mut()) == stage.everything(plain.as_mut()));
 }
 
 /// Values that break a rule together are refused when they are needed, and may be corrected.

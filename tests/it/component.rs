@@ -211,3 +211,25 @@ fn slopes_of_outputs_are_those_of_the_last_points() {
         assert!(refused.contains("variability continuous"), "{refused}");
     }
 }
+
+/// Parameters that break a rule together: nothing is changed, and they may be corrected.
+#[test]
+fn a_refused_initialisation_leaves_no_trace() {
+    let text = std::fs::read_to_string("tests/scenes/small_silo.toml").unwrap();
+    let scene = sandgate::scene::parse("small_silo", &text).unwrap();
+    let mut silo = sandgate::component::Component::new(&scene).unwrap();
+    let material = &scene.materials[0].name;
+    let angle = |which: &str| format!("material.{material}.{which}_friction_angle");
+    set(&mut silo, &angle("static"), 1.0);
+    let before = silo.state_hash();
+    let message = silo.initialize(1.0, Some(2.0)).unwrap_err().to_string();
+    assert!(message.contains("friction_angle"), "{message}");
+    assert_eq!(
+        (silo.mode(), silo.time(), silo.stop_time()),
+        (Mode::Instantiated, 0.0, None)
+    );
+    assert_eq!(silo.state_hash(), before);
+    set(&mut silo, &angle("dynamic"), 1.1);
+    silo.initialize(1.0, Some(2.0)).unwrap();
+    assert_eq!(silo.time(), 1.0);
+}
