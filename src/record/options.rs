@@ -59,8 +59,8 @@ pub struct Finished {
     pub path: Option<PathBuf>,
     /// Messages in the file.
     pub messages: u64,
-    /// Messages that are not in it because a write failed.
+    /// Messages that are neither in it nor in the files before it because a write failed.
     pub dropped: u64,
-    /// The first failure, if there was one.
+    /// The first failure, of this file or one before it, if there was one.
     pub failure: Option<Failure>,
 }

@@ -34,7 +34,15 @@ pub struct Recorder {
     /// Snapshots that were due so far.
     snapshots: u64,
     trouble: Option<RecordError>,
+    earlier: Earlier,
     last: Last,
+}
+
+/// What the files before this one lack.
+#[derive(Clone, Default)]
+struct Earlier {
+    failure: Option<Failure>,
+    dropped: u64,
 }
 
 /// Where the component was when its outputs were last written: a file that ends because the component jumped must not
@@ -98,6 +106,7 @@ impl Recorder {
             began: component.time(),
             snapshots: 0,
             trouble: None,
+            earlier: Earlier::default(),
             last: Last::default(),
         };
         recorder.remember(component);
@@ -203,15 +212,49 @@ impl Recorder {
             Ok(mut following) => {
                 following.first_time = self.first_time;
                 following.snapshots = self.snapshots;
-                let before = std::mem::replace(self, following);
-                before.finish(component, "rotated").map(drop)
+                self.go_on(following, |before| before.finish(component, "rotated"))
             }
-            Err(error) if self.options.required => Err(error),
+            Err(error) => self.stay(error),
+        }
+    }
+
+    /// Ends this file by `end` and goes on in `following`, which remembers what this one lacks.
+    fn go_on(
+        &mut self,
+        mut following: Self,
+        end: impl FnOnce(Self) -> Result<Finished, RecordError>,
+    ) -> Result<(), RecordError> {
+        following.trouble = self.trouble.take();
+        following.earlier = self.earlier.clone();
+        match end(std::mem::replace(self, following)) {
+            Ok(finished) => {
+                self.earlier = Earlier {
+                    failure: finished.failure,
+                    dropped: finished.dropped,
+                };
+                Ok(())
+            }
+            Err(error) if self.options.required => {
+                if let RecordError::Required(failure) = &error {
+                    self.earlier.failure.get_or_insert(failure.clone());
+                }
+                Err(error)
+            }
+            // The file is whole and only its name is not: told at the end.
             Err(error) => {
-                self.file.give_up(&error.to_string());
+                self.keep(Err(error));
                 Ok(())
             }
         }
+    }
+
+    /// No file can follow: a log that is not required ends here.
+    fn stay(&mut self, error: RecordError) -> Result<(), RecordError> {
+        if self.options.required {
+            return Err(error);
+        }
+        self.file.give_up(&error.to_string());
+        Ok(())
     }
 
     /// The file that takes over from this one.
@@ -311,16 +354,17 @@ impl Recorder {
             AppliedEvent::Restore => "restored",
             AppliedEvent::Step | AppliedEvent::Initialize | AppliedEvent::Set => "start",
         };
-        let mut following = self.follow(place.jumped(), component, reason)?;
-        following.trouble = self.trouble.take();
-        std::mem::replace(self, following).close(BTreeMap::new(), reason)?;
-        Ok(())
+        match self.follow(place.jumped(), component, reason) {
+            Ok(following) => self.go_on(following, |before| before.close(BTreeMap::new(), reason)),
+            Err(error) => self.stay(error),
+        }
     }
 
-    /// The first failed write, if there was one; what came after it is not in the file.
+    /// The first failed write, if there was one; what came after it is not in its file.
     #[must_use]
     pub fn failure(&self) -> Option<Failure> {
-        self.file.failure()
+        let earlier = self.earlier.failure.clone();
+        earlier.or_else(|| self.file.failure())
     }
 
     /// The first error of a call that came through [`Observer`](crate::wire::Observer), which has no answer to give.
@@ -334,24 +378,27 @@ impl Recorder {
         }
     }
 
-    /// Messages that are not in the file because a write failed.
+    /// Messages that are not in the log, in this file or those before it, because a write failed.
     #[must_use]
     pub fn dropped(&self) -> u64 {
-        self.file.counts().dropped
+        self.earlier.dropped + self.file.counts().dropped
     }
 
     /// Writes the end (reason, steps, hash of the state, drops) and the summary, and gives the file its final name.
     /// A log that failed before keeps the name that ends in `.part`.
     ///
     /// # Errors
-    /// [`RecordError::Required`] if the log is required and not whole, [`RecordError::Rename`].
+    /// [`RecordError::Required`] if the log is required and not whole, [`RecordError::Rename`]; what
+    /// [`Recorder::take_trouble`] would give.
     pub fn finish(mut self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
         self.remember(component);
         let state = [
             ("mode".to_owned(), format!("{:?}", component.mode())),
             ("state_hash".to_owned(), component.state_hash()),
         ];
-        self.close(state.into(), reason)
+        let trouble = self.trouble.take();
+        let finished = self.close(state.into(), reason)?;
+        trouble.map_or(Ok(finished), Err)
     }
 
     fn close(
@@ -374,13 +421,14 @@ impl Recorder {
             ("time_bits", format!("{:016x}", last.time.to_bits())),
             ("communication_steps", last.communication_steps.to_string()),
             ("steps", last.steps.to_string()),
-            ("dropped", self.dropped().to_string()),
+            ("dropped", self.file.counts().dropped.to_string()),
         ]);
         end.extend(state);
         self.file.metadata("end", end);
         let (counts, failure) = self.file.finish();
-        if let (Some(failure), true) = (&failure, self.options.required) {
-            return Err(RecordError::Required(failure.clone()));
+        let first = self.earlier.failure.or_else(|| failure.clone());
+        if let (Some(first), true) = (&first, self.options.required) {
+            return Err(RecordError::Required(first.clone()));
         }
         let path = match (&self.place, &failure) {
             (Some(place), None) => Some(place.rename()?),
@@ -390,8 +438,8 @@ impl Recorder {
         Ok(Finished {
             path,
             messages: counts.written,
-            dropped: counts.dropped,
-            failure,
+            dropped: self.earlier.dropped + counts.dropped,
+            failure: first,
         })
     }
 
