@@ -15,6 +15,8 @@ pub(super) struct Place {
     pub(super) number: u32,
     /// Whether a log goes over several files: then the first one has numbers, too.
     pub(super) rotates: bool,
+    /// What follows the name until the file is finished.
+    pub(super) unfinished: &'static str,
 }
 
 impl Place {
@@ -25,6 +27,7 @@ impl Place {
             epoch: 0,
             number: 0,
             rotates: false,
+            unfinished: ".part",
         }
     }
 
@@ -62,7 +65,7 @@ impl Place {
     /// The name until it is finished.
     pub(super) fn part(&self) -> PathBuf {
         let mut name = self.path().into_os_string();
-        name.push(".part");
+        name.push(self.unfinished);
         name.into()
     }
 

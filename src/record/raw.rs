@@ -10,7 +10,7 @@ use mcap::records::Record;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -81,9 +81,10 @@ pub enum RawEntry {
 }
 
 /// How a log ends.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Ending {
     /// With summary and magic bytes: the writer finished it.
+    #[default]
     Complete,
     /// Short of that.
     Cut {
@@ -108,14 +109,18 @@ impl std::fmt::Display for Ending {
                 why,
                 damaged,
             } => {
-                write!(f, "cut short near byte {byte} ({why})")?;
+                match damaged {
+                    true => write!(f, "damaged before byte {byte} ({why})")?,
+                    false => write!(f, "cut short near byte {byte} ({why})")?,
+                }
                 if let Some(last) = last {
                     write!(f, ", last message at {} s", *last as f64 * 1e-9)?;
                 }
                 if *damaged {
                     return write!(
                         f,
-                        ": bytes were changed after they were written; nothing after them was read"
+                        ": bytes were changed after they were written; what was read may be wrong or have gaps, \
+                         and nothing behind that byte was read"
                     );
                 }
                 write!(
@@ -148,6 +153,8 @@ pub struct RawReader {
     bytes: u64,
     last: Option<u64>,
     in_summary: bool,
+    /// Whether the file ends as a finished one does.
+    finished: bool,
     ending: Option<Ending>,
 }
 
@@ -179,8 +186,17 @@ impl RawReader {
                 path: path.to_owned(),
             });
         }
+        let mut last = Vec::new();
+        if size >= 2 * expected.len() as u64 {
+            let back = -(expected.len() as i64);
+            source.seek(SeekFrom::End(back)).map_err(io)?;
+            source.read_to_end(&mut last).map_err(io)?;
+        }
+        // Read once more: the checksum of all records begins with the magic bytes.
+        source.rewind().map_err(io)?;
         let options = LinearReaderOptions::default()
-            .with_skip_start_magic(true)
+            .with_validate_data_section_crc(check != Check::Not)
+            .with_validate_summary_section_crc(check != Check::Not)
             .with_validate_chunk_crcs(check == Check::AtTheEnd)
             .with_prevalidate_chunk_crcs(check == Check::Before)
             // A damaged length must not ask for more memory than the file has bytes.
@@ -191,9 +207,10 @@ impl RawReader {
             reader: LinearReader::new_with_options(options),
             schemas: HashMap::new(),
             channels: HashMap::new(),
-            bytes: expected.len() as u64,
+            bytes: 0,
             last: None,
             in_summary: false,
+            finished: last == expected,
             ending: None,
         })
     }
@@ -211,11 +228,11 @@ impl RawReader {
     }
 
     fn cut(&mut self, why: &McapError) {
-        // Longer than the file: either its end is missing or its length was changed; the first is the rule.
-        let missing = matches!(
+        // Longer than the file: its end is missing or a length was changed. A file that ends as finished ones do lacks
+        // nothing.
+        let beyond = matches!(
             why,
             McapError::UnexpectedEof
-                | McapError::BadMagic
                 | McapError::RecordTooLarge { .. }
                 | McapError::ChunkTooLarge(_)
         );
@@ -223,10 +240,11 @@ impl RawReader {
             byte: self.bytes,
             last: self.last,
             why: match why {
-                _ if missing => "the file ends within a record".to_owned(),
+                _ if beyond && self.finished => "a record does not end where it says".to_owned(),
+                _ if beyond => "the file ends within a record".to_owned(),
                 other => other.to_string(),
             },
-            damaged: !missing,
+            damaged: self.finished || !beyond,
         });
     }
 

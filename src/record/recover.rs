@@ -50,7 +50,11 @@ pub enum RecoverError {
 /// [`RecoverError::Read`] if `from` is no log, [`RecoverError::Write`] if `to` exists or cannot be written.
 pub fn recover(from: &Path, to: &Path) -> Result<Recovered, RecoverError> {
     let mut source = RawReader::checking(from, Check::Before)?;
-    let place = Place::alone(to);
+    let place = Place {
+        // `run.mcap.part` may be what is recovered to `run.mcap`.
+        unfinished: ".recovering",
+        ..Place::alone(to)
+    };
     let sink = Box::new(place.create()?);
     let mut copy = Copy {
         file: LogFile::start(sink, Some(place.part()), Pace::Caller),

@@ -50,7 +50,8 @@ pub struct Redriven {
 }
 
 impl Redriven {
-    /// Whether the log was there to its end and nothing differs.
+    /// Whether nothing differs and no byte of the log was changed. True also for a log that was cut short, as far as it
+    /// goes; [`Redriven::ending`] tells.
     #[must_use]
     pub fn is_same(&self) -> bool {
         self.difference.is_none()

@@ -1,7 +1,7 @@
 //! The scalars of a log side by side: one row a communication point, the columns of the run's `gauges.csv`.
 
 use super::error::ReadError;
-use super::raw::{RawEntry, RawReader};
+use super::raw::{Ending, RawEntry, RawReader};
 use super::read::{Body, decode};
 use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
 use crate::scene;
@@ -35,6 +35,8 @@ pub struct Table {
     pub step: Vec<u64>,
     /// Inputs and outputs in the order of the table of variables.
     pub columns: Vec<Column>,
+    /// How the log ends: whether rows are missing or may be wrong.
+    pub ending: Ending,
 }
 
 /// Errors of [`Table::read`].
@@ -63,7 +65,8 @@ impl Table {
     /// [`TableError`].
     pub fn read(path: &Path, span: (f64, f64)) -> Result<Self, TableError> {
         let mut builder: Option<Builder> = None;
-        for entry in RawReader::open(path)? {
+        let mut reader = RawReader::open(path)?;
+        for entry in reader.by_ref() {
             match (entry?, &mut builder) {
                 (RawEntry::Attachment { name, data, .. }, none @ None) if name == "scene.toml" => {
                     let scene = scene::parse("scene.toml", &String::from_utf8_lossy(&data))?;
@@ -86,11 +89,16 @@ impl Table {
                 _ => {}
             }
         }
-        builder
-            .map(|builder| builder.table)
-            .ok_or_else(|| TableError::NoScene {
-                path: path.to_owned(),
-            })
+        let mut table = match builder {
+            Some(builder) => builder.table,
+            None => {
+                return Err(TableError::NoScene {
+                    path: path.to_owned(),
+                });
+            }
+        };
+        table.ending = reader.ending().cloned().unwrap_or_default();
+        Ok(table)
     }
 
     /// A column by name.

@@ -2,11 +2,12 @@
 
 use super::channels::add;
 use super::file::{LogFile, Pace};
+use super::place::Place;
 use super::sink::Sink;
 use super::sink::tests::Disk;
-use super::{Body, Ending, Entry, LogReader, check_mass};
+use super::{Body, Ending, Entry, LogReader, RecordError, RecordOptions, Recorder, check_mass};
 use crate::wire::convert::nanoseconds;
-use crate::wire::messages::{MassLedger, StepStats};
+use crate::wire::messages::{AppliedEvent, MassLedger, StepStats};
 use prost::Message;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -110,7 +111,10 @@ fn a_log_cut_at_any_byte_reads_up_to_the_cut_and_says_so() {
         assert!(all.starts_with(&entries), "cut at {length}");
         assert!(entries.len() >= longest, "cut at {length}");
         longest = entries.len();
-        assert!(matches!(ending, Ending::Cut { .. }), "cut at {length}");
+        assert!(
+            matches!(ending, Ending::Cut { damaged: false, .. }),
+            "cut at {length}"
+        );
         assert!(ending.to_string().contains("cut short"), "{ending}");
     }
     assert_eq!(longest, all.len());
@@ -132,6 +136,29 @@ fn a_damaged_byte_never_passes_as_a_message() {
     let refused = log.by_ref().any(|entry| entry.is_err());
     let cut = matches!(log.ending(), Some(Ending::Cut { why, .. }) if why.contains("CRC"));
     assert!(refused || cut, "{:?}", log.ending());
+}
+
+#[test]
+fn no_changed_byte_of_a_record_header_passes_as_a_cut() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let lines: Vec<_> = (0..6).map(line).collect();
+    let bytes = whole(&lines, 2);
+    let (mut at, mut records) = (mcap::MAGIC.len(), 0);
+    while at < bytes.len() - mcap::MAGIC.len() {
+        for byte in at..at + 9 {
+            for bit in 0..8 {
+                let mut changed = bytes.clone();
+                changed[byte] ^= 1 << bit;
+                let mut log = LogReader::open(&on_disk(folder.path(), &changed)).unwrap();
+                let refused = log.by_ref().any(|entry| entry.is_err());
+                let told = matches!(log.ending(), Some(Ending::Cut { damaged: true, .. }));
+                assert!(refused || told, "byte {byte}, {bit}: {:?}", log.ending());
+            }
+        }
+        at += 9 + u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+        records += 1;
+    }
+    assert!(records > 10, "{records}");
 }
 
 #[test]
@@ -232,5 +259,57 @@ fn a_wrong_account_of_mass_is_found_to_the_last_bit() {
         let found = check.wrong.expect("one line is wrong");
         assert_eq!(found.step, 17);
         assert!(found.to_string().contains("step 17 at 0.17 s"), "{found}");
+    }
+}
+
+#[test]
+fn what_a_file_lacks_is_not_forgotten_when_the_next_one_begins() {
+    let text = include_str!("../../tests/scenes/small_silo.toml");
+    let scene = crate::scene::parse("small_silo.toml", text).unwrap();
+    for jumps in [false, true] {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let mut component = crate::component::Component::new(&scene).unwrap();
+        component.initialize(0.0, None).unwrap();
+        let options = RecordOptions {
+            rotate_every: if jumps { 0.0 } else { 0.004 },
+            required: false,
+            ..RecordOptions::of(&component)
+        };
+        let place = Place {
+            rotates: !jumps,
+            ..Place::alone(&folder.path().join("silo.mcap"))
+        };
+        let disk = Disk::with_room(PLENTY);
+        let sink = Box::new(disk.clone());
+        let mut recorder = Recorder::start(sink, Some(place), &component, options, None).unwrap();
+        let trouble = Err(RecordError::Exists {
+            path: "earlier".into(),
+        });
+        recorder.keep(trouble);
+        *disk.room.lock().unwrap() = 0;
+        let report = component.do_step(0.0, 0.005).unwrap();
+        recorder
+            .record_step(&component, &report, 0.0, 0.005, "test")
+            .unwrap();
+        if jumps {
+            component.reset().unwrap();
+            recorder
+                .record_jump(&component, AppliedEvent::Reset, "test")
+                .unwrap();
+        }
+        assert!(recorder.failure().is_some());
+        assert!(recorder.dropped() > 0);
+        let trouble = recorder.take_trouble();
+        assert!(matches!(trouble, Some(RecordError::Exists { .. })));
+        let finished = recorder.finish(&component, "finished").unwrap();
+        let path = finished.path.unwrap();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let expected = if jumps {
+            "silo-1-0000.mcap"
+        } else {
+            "silo-0-0001.mcap"
+        };
+        assert_eq!(name, expected);
+        assert!(finished.dropped > 0 && finished.failure.is_some());
     }
 }

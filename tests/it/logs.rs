@@ -224,6 +224,63 @@ fn a_byte_changed_in_the_file_makes_the_check_fail() {
 }
 
 #[test]
+fn no_changed_byte_of_a_chunk_header_passes_the_check() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let bytes = std::fs::read(logged().join("run.mcap")).unwrap();
+    let length = |at: usize| u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+    let mut at = 8;
+    // Chunks have opcode 6.
+    while bytes[at] != 6 {
+        at += 9 + length(at);
+    }
+    let bad = folder.path().join("damaged.mcap");
+    for byte in at..at + 9 {
+        let mut changed = bytes.clone();
+        changed[byte] ^= 16;
+        std::fs::write(&bad, changed).unwrap();
+        let output = sandgate(&[
+            OsStr::new("log"),
+            OsStr::new("redrive"),
+            OsStr::new("--check"),
+            bad.as_os_str(),
+        ]);
+        let code = output.status.code();
+        assert!(matches!(code, Some(5 | 7)), "byte {byte}: {code:?}");
+    }
+}
+
+#[test]
+fn an_unfinished_log_is_recovered_to_its_own_name() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let bytes = std::fs::read(logged().join("run.mcap")).unwrap();
+    let (cut, whole) = (
+        folder.path().join("run.mcap.part"),
+        folder.path().join("run.mcap"),
+    );
+    std::fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
+    let done = recover(&cut, &whole).unwrap();
+    assert!(done.messages > 10);
+    assert_eq!(Survey::of(&whole).unwrap().ending, Ending::Complete);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    // What is exported of the cut one comes with a warning.
+    let (csv, vtk) = (folder.path().join("run.csv"), folder.path().join("vtk"));
+    for (option, to) in [("--csv", &csv), ("--vtk", &vtk)] {
+        for (log, cut) in [(&cut, true), (&whole, false)] {
+            let words = [OsStr::new("log"), OsStr::new("export"), log.as_os_str()];
+            let output = sandgate(&[&words[..], &[OsStr::new(option), to.as_os_str()]].concat());
+            let said = text(&output.stderr);
+            assert!(output.status.success(), "{said}");
+            assert_eq!(said.contains("cut short near byte"), cut, "{said}");
+            if to.is_dir() {
+                std::fs::remove_dir_all(to).unwrap();
+            } else {
+                std::fs::remove_file(to).unwrap();
+            }
+        }
+    }
+}
+
+#[test]
 fn a_new_run_of_a_log_can_be_logged_with_more_particles() {
     let folder = temp_dir::TempDir::new().unwrap();
     let again = folder.path().join("again.mcap").display().to_string();
@@ -743,6 +800,40 @@ fn a_file_of_a_long_log_is_never_overwritten() {
     assert!(recorder.finish(&component, "finished").unwrap().dropped > 0);
     assert_eq!(std::fs::read_to_string(&taken).unwrap(), "mine");
     assert!(sandgate::record::Recorder::create(&path, &component, options).is_err());
+}
+
+#[test]
+fn a_name_taken_meanwhile_does_not_stop_a_run() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let scene = sandgate::scene::load(&python::root().join(SCENE)).unwrap();
+    let mut component = sandgate::component::Component::new(&scene).unwrap();
+    let options = sandgate::record::RecordOptions {
+        rotate_every: 0.004,
+        required: false,
+        ..sandgate::record::RecordOptions::of(&component)
+    };
+    component.initialize(0.0, None).unwrap();
+    let path = folder.path().join("silo.mcap");
+    let mut recorder = sandgate::record::Recorder::create(&path, &component, options).unwrap();
+    std::fs::write(folder.path().join("silo-0-0000.mcap"), "mine").unwrap();
+    for _ in 0..2 {
+        let t = component.time();
+        let report = component.do_step(t, 0.005).unwrap();
+        recorder
+            .record_step(&component, &report, t, 0.005, "test")
+            .unwrap();
+    }
+    assert_eq!((recorder.failure(), recorder.dropped()), (None, 0));
+    let error = recorder.finish(&component, "finished").unwrap_err();
+    assert!(error.to_string().contains("rename it by hand"), "{error}");
+    for whole in [
+        "silo-0-0000.mcap.part",
+        "silo-0-0001.mcap",
+        "silo-0-0002.mcap",
+    ] {
+        let survey = Survey::of(&folder.path().join(whole)).unwrap();
+        assert_eq!(survey.ending, Ending::Complete, "{whole}");
+    }
 }
 
 #[test]

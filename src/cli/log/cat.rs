@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::Choice;
+use super::{Choice, warn_unless_complete};
 use crate::cli::{CliError, cannot_print};
-use crate::record::{Ending, JsonReader, RawChannel, RawEntry, RawMessage, RawReader, below_base};
+use crate::record::{JsonReader, RawChannel, RawEntry, RawMessage, RawReader, below_base};
 
 /// What may be typed after `sandgate log cat`.
 #[derive(Debug, clap::Args)]
@@ -58,8 +58,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         writeln!(out, "{line}").map_err(cannot_print)?;
     }
     out.flush().map_err(cannot_print)?;
-    if let Some(ending @ Ending::Cut { .. }) = reader.ending() {
-        eprintln!("warning: {}: {ending}", args.file.display());
+    if let Some(ending) = reader.ending() {
+        warn_unless_complete(&args.file, ending);
     }
     Ok(())
 }

@@ -4,9 +4,9 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::{Window, parquet, vtk};
+use super::{Window, parquet, vtk, warn_unless_complete};
 use crate::cli::{CliError, say};
-use crate::record::Table;
+use crate::record::{Ending, Table};
 
 /// What may be typed after `sandgate log export`.
 #[derive(Debug, clap::Args)]
@@ -38,8 +38,9 @@ All values are SI. Files that exist are not overwritten.";
 /// Carries out `sandgate log export`.
 ///
 /// # Errors
-/// [`CliError::Table`], [`CliError::Read`], [`CliError::File`].
+/// [`CliError::Table`], [`CliError::Read`], [`CliError::File`]. A cut is told on standard error and is no error.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    let mut ending = Ending::Complete;
     if args.csv.is_some() || args.parquet.is_some() {
         let table = Table::read(&args.file, args.window.span())?;
         let shape = format!(
@@ -59,10 +60,14 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
                 .map_err(|e| cannot_write(path, std::io::Error::other(e)))?;
             say(&format!("{}: {shape}", path.display()))?;
         }
+        ending = table.ending;
     }
     if let Some(folder) = &args.vtk {
-        say(&vtk::write(&args.file, folder, &args.window)?)?;
+        let (line, ends) = vtk::write(&args.file, folder, &args.window)?;
+        say(&line)?;
+        ending = ends;
     }
+    warn_unless_complete(&args.file, &ending);
     Ok(())
 }
 

@@ -12,7 +12,8 @@ mod replay;
 mod vtk;
 
 use super::{CliError, quantity};
-use crate::record::Topics;
+use crate::record::{Ending, Topics};
+use std::path::Path;
 
 /// What may be typed after `sandgate log`.
 #[derive(Debug, clap::Args)]
@@ -52,6 +53,13 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         Verb::Export(args) => export::run(args),
         #[cfg(feature = "bus")]
         Verb::Replay(args) => replay::run(args),
+    }
+}
+
+/// Tells on standard error that a log is not whole. No error: what is there is of use.
+pub(in crate::cli) fn warn_unless_complete(log: &Path, ending: &Ending) {
+    if *ending != Ending::Complete {
+        eprintln!("warning: {}: {ending}", log.display());
     }
 }
 

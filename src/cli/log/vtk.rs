@@ -10,14 +10,19 @@ use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
 use super::Window;
 use super::export::{cannot_write, create};
 use crate::cli::CliError;
-use crate::record::{Body, Entry, LogReader};
+use crate::record::{Body, Ending, Entry, LogReader};
 use crate::wire::foxglove::{FrameTransform, PointCloud, Pose, SceneEntity, SceneUpdate};
 
-/// Writes what is in `window` to the new folder `folder`; gives a line for people.
+/// Writes what is in `window` to the new folder `folder`; gives a line for people and how the log
+/// ends.
 ///
 /// # Errors
 /// [`CliError::Read`], [`CliError::File`].
-pub(super) fn write(log: &Path, folder: &Path, window: &Window) -> Result<String, CliError> {
+pub(super) fn write(
+    log: &Path,
+    folder: &Path,
+    window: &Window,
+) -> Result<(String, Ending), CliError> {
     std::fs::create_dir(folder).map_err(|source| CliError::File {
         action: "make folder",
         path: folder.to_owned(),
@@ -27,7 +32,8 @@ pub(super) fn write(log: &Path, folder: &Path, window: &Window) -> Result<String
     let mut scene = SceneUpdate::default();
     let mut frames: HashMap<String, Isometry3<f64>> = HashMap::new();
     let (mut particles, mut walls) = (Vec::new(), Vec::new());
-    for entry in LogReader::open(log)? {
+    let mut reader = LogReader::open(log)?;
+    for entry in reader.by_ref() {
         let Entry::Message { log_time, body, .. } = entry? else {
             continue;
         };
@@ -60,11 +66,12 @@ pub(super) fn write(log: &Path, folder: &Path, window: &Window) -> Result<String
         file.write_all(collection(list).as_bytes())
             .map_err(|e| cannot_write(&path, e))?;
     }
-    Ok(format!(
+    let line = format!(
         "{}: {} snapshots; open particles.pvd and walls.pvd",
         folder.display(),
         particles.len()
-    ))
+    );
+    Ok((line, reader.ending().cloned().unwrap_or_default()))
 }
 
 /// Points, cells over them, and values of either.
