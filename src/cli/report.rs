@@ -1,8 +1,8 @@
 //! `sandgate report FILE`: a log as one page for a browser.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::{CliError, say};
+use super::{CliError, log, say};
 use crate::report::report;
 
 /// What may be typed after `sandgate report`.
@@ -21,10 +21,18 @@ pub(super) struct Args {
 /// Carries out `sandgate report`.
 ///
 /// # Errors
-/// [`CliError::Report`], [`CliError::File`].
+/// [`CliError::Report`], [`CliError::File`]; [`CliError::Usage`] if the page would replace the log. A cut is told on
+/// standard error and is no error.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    if real(&args.output).is_some_and(|output| real(&args.file) == Some(output)) {
+        return Err(CliError::Usage(format!(
+            "--output {} is the log itself, which is not overwritten; give another file",
+            args.output.display()
+        )));
+    }
     let page = report(&args.file, usize::from(args.particles_mb) * 1_000_000)?;
-    std::fs::write(&args.output, &page.html).map_err(|source| CliError::File {
+    replace(&args.output, page.html.as_bytes()).map_err(|source| CliError::File {
         action: "write",
         path: args.output.clone(),
         source,
@@ -37,5 +45,18 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         page.rows,
         page.snapshots,
         page.snapshots_in_log
-    ))
+    ))?;
+    log::warn_unless_complete(&args.file, &page.ending);
+    Ok(())
+}
+
+/// Writes beside and renames, so that a full disk leaves the old page. What is no file (`/dev/stdout`) is written to.
+fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+        return std::fs::write(path, bytes);
+    }
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    std::fs::write(&beside, bytes)?;
+    std::fs::rename(&beside, path)
 }

@@ -4,7 +4,7 @@
 use super::ReportError;
 use super::pack::{Cloud, PACKED, Scale, high};
 use crate::component::MassLedger;
-use crate::record::{Body, Entry, LogReader, Survey, Table};
+use crate::record::{Body, Ending, Entry, LogReader, Survey, Table};
 use crate::scene::{self, Scene};
 use crate::wire::foxglove::{FrameTransform, Pose, SceneEntity, SceneUpdate};
 use crate::wire::messages::StepStats;
@@ -173,10 +173,8 @@ impl Gathered {
         Ok(())
     }
 
-    pub(super) fn title(&self) -> String {
-        let run = self.survey.metadata("run");
-        let title = run.and_then(|run| run.get("title"));
-        title.cloned().unwrap_or_else(|| "Sandgate log".to_owned())
+    pub(super) fn ending(&self) -> &Ending {
+        &self.survey.ending
     }
 
     /// Every so many rows are shown.

@@ -7,7 +7,7 @@
 mod gather;
 mod pack;
 
-use crate::record::{ReadError, TableError};
+use crate::record::{Ending, ReadError, TableError};
 use gather::Gathered;
 use std::path::Path;
 
@@ -22,6 +22,8 @@ pub struct Report {
     pub snapshots_in_log: usize,
     /// Communication points in it.
     pub rows: usize,
+    /// How the log ends.
+    pub ending: Ending,
 }
 
 /// Errors of [`report`].
@@ -42,9 +44,7 @@ pub enum ReportError {
 pub fn report(log: &Path, most_bytes: usize) -> Result<Report, ReportError> {
     let gathered = Gathered::read(log, most_bytes)?;
     let data = gathered.json();
-    let title = escaped(&gathered.title());
     let html = include_str!("page/page.html")
-        .replace("__TITLE__", &title)
         .replace("__STYLE__", include_str!("page/style.css"))
         .replace(
             "__SCRIPT__",
@@ -61,11 +61,6 @@ pub fn report(log: &Path, most_bytes: usize) -> Result<Report, ReportError> {
         snapshots: gathered.snapshots.len(),
         snapshots_in_log: gathered.snapshots_in_log,
         rows: gathered.rows(),
+        ending: gathered.ending().clone(),
     })
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

@@ -87,6 +87,31 @@ fn snapshots_are_left_out_evenly_to_keep_a_page_small() {
     let small = sandgate::report::report(&log, 45_000).unwrap();
     assert_eq!((small.snapshots, small.snapshots_in_log), (8, 21));
     assert!(small.html.contains("8 of the log's 21 snapshots"));
+
+    let bytes = std::fs::read(&log).unwrap();
+    let report = |log: &Path, page: &Path| {
+        let program = env!("CARGO_BIN_EXE_sandgate");
+        let mut command = Command::new(program);
+        let output = command.arg("report").arg(log).arg("-o").arg(page).output();
+        let output = output.unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), said)
+    };
+    // Not over the log, whatever it is called.
+    let (code, said) = report(&log, &folder.path().join("out/../out/run.mcap"));
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("is the log itself"), "{said}");
+    assert_eq!(std::fs::read(&log).unwrap(), bytes);
+    let (cut, page) = (
+        folder.path().join("cut.mcap"),
+        folder.path().join("cut.html"),
+    );
+    std::fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
+    let (code, said) = report(&cut, &page);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("cut short near byte"), "{said}");
+    let html = std::fs::read_to_string(&page).unwrap();
+    assert!(html.contains("\"ending\":\"cut short near byte"));
 }
 
 #[test]

@@ -36,14 +36,16 @@ function ticks(low, high, count) {
   const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= rough * 0.999) || rough;
+  const first = Math.ceil(low / step - 1e-9), steps = Math.floor(high / step + 1e-9) - first;
+  // Counted from 0, as k + 1 may be k where numbers are large; the bound is never reached by a span of round numbers.
   const list = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) list.push(Number((k * step).toPrecision(12)));
+  for (let k = 0; k <= Math.min(steps, 4 * count); k++) list.push(Number(((first + k) * step).toPrecision(12)));
   return list;
 }
 
 // As many digits as tell one tick from the next.
 function label(value, list) {
-  const step = list.length > 1 ? list[1] - list[0] : Math.abs(value) || 1;
+  const step = (list.length > 1 && list[1] - list[0]) || Math.abs(value) || 1;
   const size = Math.max(...list.map(Math.abs));
   if (value === 0) return "0";
   if (size >= 1e5 || size < 1e-3) return value.toExponential(Math.max(0, Math.floor(Math.log10(Math.abs(value)) + 1e-9) - Math.floor(Math.log10(step) + 1e-9))).replace("e+", "e");
@@ -58,7 +60,8 @@ function span(lists) {
     if (value > high) high = value;
   }
   if (low > high) return [0, 1];
-  if (low === high) { const pad = Math.abs(low) * 0.1 || 1; return [low === 0 ? 0 : low - pad, high + pad]; }
+  // Equal but for rounding, and ticks have twelve digits: there is nothing to see between them.
+  if (high - low <= 1e-10 * Math.max(Math.abs(low), Math.abs(high))) { const pad = Math.abs(low) * 0.1 || 1; return [low === 0 ? 0 : low - pad, high + pad]; }
   // From zero if that wastes less than a third.
   if (low > 0 && low < (high - low) / 2) low = 0;
   const pad = (high - low) * 0.04;

@@ -12,8 +12,8 @@ function table(parent, head, rows) {
 
 function header() {
   const run = data.run, end = data.end;
-  byId("title").textContent = run.title || run.scene || "Log";
-  const how = end ? `ended "${end.reason}"` : data.recovered ? "recovered from a log that was cut" : "cut short";
+  byId("title").textContent = document.title = run.title || run.scene || "Log";
+  const how = data.ending !== "complete" ? data.ending : end ? `ended "${end.reason}"` : data.recovered ? "recovered from a log that was cut" : "cut short";
   byId("subtitle").textContent = `${run.scene || "?"}, sandgate ${run.version || "?"}, seed ${run.seed || "?"}, ${how}`;
 }
 
