@@ -77,11 +77,16 @@ impl Stepper<'_> {
     /// Works until told to stop, until `terminate`, or until nobody can ask any more.
     pub(super) fn run(&mut self, observer: &mut dyn Observer, stop: &AtomicBool) {
         let mut pace: Option<Pace> = None;
+        // Turns since the orchestrator's silence lasted too long.
+        let mut overdue = 0;
         while !stop.load(Relaxed) {
             self.write_notes(observer);
             let wait = match self.protocol.free_running() {
                 None => {
-                    pace = None;
+                    if pace.take().is_some() {
+                        // While the component stepped by itself nobody had to speak.
+                        self.watch.excuse();
+                    }
                     LOOK_UP
                 }
                 Some(factor) => {
@@ -96,6 +101,15 @@ impl Stepper<'_> {
                     wait.min(LOOK_UP)
                 }
             };
+            overdue = match pace.is_none() && self.watch.is_due() {
+                true => overdue + 1,
+                false => 0,
+            };
+            // What waits in the queue may be the request that was missed. Set-points that keep coming are not.
+            if overdue > WAITING_TASKS && self.is_lost(observer) {
+                break;
+            }
+            let wait = if overdue > 0 { Duration::ZERO } else { wait };
             match self.tasks.recv_timeout(wait) {
                 Ok(task) => {
                     if self.carry_out(task, observer) {
@@ -109,10 +123,7 @@ impl Stepper<'_> {
                         .is_some_and(|p| p.wait(self.component.time()).is_zero());
                     if due {
                         self.free_step(observer);
-                    } else if pace.is_none()
-                        && let Some(lost) = self.watch.due()
-                        && self.lose(lost, observer)
-                    {
+                    } else if overdue > 0 && self.is_lost(observer) {
                         break;
                     }
                 }
@@ -161,7 +172,7 @@ impl Stepper<'_> {
                 exchange.status = reply.status();
                 exchange.reply.clone_from(&reply.body);
                 let ends = reply.ends;
-                if request.verb.changes() {
+                if request.verb.changes() && reply.error.is_none() {
                     self.watch.hear();
                     self.shared.orchestrator_lost.store(false, Relaxed);
                 }
@@ -173,6 +184,12 @@ impl Stepper<'_> {
                 ends
             }
         }
+    }
+
+    /// Whether the server ends because the orchestrator has been silent for too long.
+    fn is_lost(&mut self, observer: &mut dyn Observer) -> bool {
+        let lost = self.watch.due();
+        lost.is_some_and(|lost| self.lose(lost, observer))
     }
 
     /// The orchestrator is silent: tells so and does what was wished. Whether the server ends.
@@ -283,5 +300,63 @@ impl Pace {
         let due = Duration::try_from_secs_f64(((time - self.from) / self.factor).max(0.0))
             .unwrap_or(Duration::MAX);
         due.saturating_sub(self.began.elapsed())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::component::{Causality, ValueKind};
+    use crate::wire::Unobserved;
+    use std::sync::mpsc::sync_channel;
+
+    #[test]
+    fn set_points_that_keep_coming_are_no_orchestrator() {
+        let text = include_str!("../../tests/scenes/small_silo.toml");
+        let scene = crate::scene::parse("small_silo.toml", text).unwrap();
+        let mut component = Component::new(&scene).unwrap();
+        let mut protocol = Protocol::new("sandgate/v1/silo", None);
+        protocol
+            .begin(&mut component, &mut Unobserved, "test")
+            .unwrap();
+        let input = component.variables().rows().iter().find(|row| {
+            row.causality == Causality::Input && row.kind == ValueKind::Real && row.len() == 1
+        });
+        let body = |variable: &str| SetPoint::parse(variable, b"0.5").unwrap();
+        let point = body(&input.unwrap().name);
+        let shared = Shared::new(protocol.status(&component));
+        let (give, tasks) = sync_channel(WAITING_TASKS);
+        let (_keep, notes) = sync_channel(1);
+        let mut watch = Watch::new(Some(Lost {
+            after: Duration::from_millis(200),
+            then: WhenLost::Terminate,
+        }));
+        watch.hear();
+        let stop = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                // Far more often than the stepping thread looks up.
+                for _ in 0..2000 {
+                    let sent = give.try_send(Task::SetPoint(point.clone()));
+                    let lost = shared.orchestrator_lost.load(Relaxed);
+                    if lost || sent.is_err() {
+                        break;
+                    }
+                    shared.waiting_set_points.fetch_add(1, Relaxed);
+                    std::thread::sleep(Duration::from_millis(5));
+                }
+                stop.store(true, Relaxed);
+            });
+            let mut stepper = Stepper {
+                component,
+                protocol,
+                shared: &shared,
+                tasks,
+                notes,
+                watch,
+            };
+            stepper.run(&mut Unobserved, &stop);
+        });
+        assert!(shared.orchestrator_lost.load(Relaxed));
     }
 }

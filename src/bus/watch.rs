@@ -39,14 +39,26 @@ impl Watch {
         self.heard = Some(Instant::now());
     }
 
+    /// Counts silence anew from now on, if somebody was there before.
+    pub(super) fn excuse(&mut self) {
+        if self.heard.is_some() {
+            self.hear();
+        }
+    }
+
+    /// Whether the silence has lasted too long.
+    pub(super) fn is_due(&self) -> bool {
+        let silent = self.heard.map(|heard| heard.elapsed());
+        matches!((self.lost, silent), (Some(lost), Some(silent)) if silent >= lost.after)
+    }
+
     /// What to do now: once for each silence.
     pub(super) fn due(&mut self) -> Option<Lost> {
-        let lost = self.lost?;
-        if self.heard?.elapsed() < lost.after {
+        if !self.is_due() {
             return None;
         }
         self.heard = None;
-        Some(lost)
+        self.lost
     }
 }
 
