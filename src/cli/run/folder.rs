@@ -158,7 +158,26 @@ fn is_ours(name: &str) -> bool {
     matches!(
         whole,
         "summary.json" | "gauges.csv" | "gauges.svg" | "checkpoint.state"
-    ) || (whole.starts_with("run") && whole.ends_with(".mcap"))
+    ) || is_log(whole)
+}
+
+/// The names that [`Folder::next_log`] and a log over several files give: `run`, `run-2`, `run-0-0001`, `run-2-0-0001`.
+fn is_log(name: &str) -> bool {
+    let middle = name
+        .strip_prefix("run")
+        .and_then(|rest| rest.strip_suffix(".mcap"));
+    let Some(middle) = middle else {
+        return false;
+    };
+    let numbers: Vec<&str> = middle.split('-').collect();
+    let digits = |text: &&str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    numbers[0].is_empty()
+        && numbers[1..].iter().all(digits)
+        && match numbers[1..] {
+            [] | [_] => true,
+            [_, part] | [_, _, part] => part.len() >= 4,
+            _ => false,
+        }
 }
 
 fn earlier_summary(folder: &Path) -> Option<Value> {
@@ -194,5 +213,40 @@ fn cannot_make(path: &Path, source: std::io::Error) -> CliError {
         path: path.to_path_buf(),
         source,
         remedy: "give a folder you may write to with --out",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_that_a_run_gives_are_ours() {
+        for ours in [
+            "summary.json",
+            "checkpoint.state",
+            "run.mcap",
+            "run.mcap.part",
+            "run-2.mcap",
+            "run-0-0000.mcap",
+            "run-3-12345.mcap.part",
+            "run-2-1-0003.mcap",
+        ] {
+            assert!(is_ours(ours), "{ours}");
+        }
+        for other in [
+            "run-best.mcap",
+            "running.mcap",
+            "run2.mcap",
+            "run-0-1.mcap",
+            "run-0-0000-1-1.mcap",
+            "run-.mcap",
+            "run--0001.mcap",
+            "run.mcap.recovering",
+            "run_old.mcap",
+            "prerun.mcap",
+        ] {
+            assert!(!is_ours(other), "{other}");
+        }
     }
 }
