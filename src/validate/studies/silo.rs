@@ -33,6 +33,8 @@ const TEMPLATE: &str = include_str!("../../../cases/validation/silo.toml");
 const TABLE: &str = include_str!("../../../cases/reference/silo_basilisk.csv");
 /// Unit of length of the published table [m].
 const UNIT: f64 = 0.1;
+/// Grain diameter d [m].
+const GRAIN: f64 = UNIT / 30.0;
 /// Half-openings over the unit: those of the table, and one between.
 const HALF_OPENINGS: [f64; 5] = [0.157, 0.235125, 0.31325, 0.391375, 0.4695];
 /// Bulk density phi_max rho_s [kg/m^3].
@@ -87,7 +89,7 @@ fn scene(d: f64, across: f64) -> Result<Template, String> {
             "materials.grains.inertial_number_scale",
             0.40 / 0.6_f64.sqrt(),
         )
-        .with("materials.grains.grain_diameter", UNIT / 30.0)
+        .with("materials.grains.grain_diameter", GRAIN)
         .with("materials.grains.grain_density", BULK_DENSITY / 0.6)
         .with("bodies.fill.box", rectangle([-side, 0.0], [side, 4.5 * d]))
         .with("walls.left.polyline", points(&left))

@@ -127,7 +127,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
         let (rule, why) = if known > 0.8 {
             (
                 Rule::NearShare(known, 0.10),
-                "the table's band is 8 %, its grid is coarse",
+                "what is asked of entries that flow freely; the table's grid has 12.8 cells an opening",
             )
         } else {
             (

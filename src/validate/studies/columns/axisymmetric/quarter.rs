@@ -84,7 +84,7 @@ pub(super) fn judge(results: &Results) -> Vec<Metric> {
             format!("a = 0.90 in space against rings of the same spacing: {what}"),
             rings.and(space),
             rule,
-            "the same problem twice; mean of three directions",
+            "the same problem twice, 4 sqrt(H0/g) after its start; mean of three directions",
         )
     };
     let height = |r: Option<&Recording>| r?.last(CENTRE).map(|h| h / COLUMN.height);
