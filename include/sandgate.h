@@ -14,6 +14,8 @@
  *              changes nothing and the instance goes on; after SANDGATE_STEP_FAILED only reading, restore, reset and
  *              terminate are allowed; after SANDGATE_BROKEN only restore, reset and free. No call ever ends the
  *              process, changes the locale, the working directory, signal handlers or the floating-point mode.
+ *   Files      None is read or written but those that you name: by sandgate_create_from_file and by the parameter
+ *              log.path (docs/logs.md).
  *   Results    The same calls give the same bits, whatever the number of threads.
  */
 #ifndef SANDGATE_H
@@ -37,7 +39,8 @@ typedef enum sandgate_status {
     SANDGATE_BAD_ARGUMENT = 3, /* NULL, wrong length, unknown reference, out of range, not finite */
     SANDGATE_STEP_FAILED = 4,  /* the solver gave up: the component is in mode SANDGATE_FAILED */
     SANDGATE_BAD_STATE = 5,    /* saved bytes that cannot be used: another scene or version, cut short, changed */
-    SANDGATE_BROKEN = 6        /* a fault inside the library; please report it */
+    SANDGATE_BROKEN = 6,       /* a fault inside the library; please report it */
+    SANDGATE_OUTSIDE = 7       /* the log or the Zenoh session that parameters ask for cannot be opened or written */
 } sandgate_status;
 
 /* Where a component is in its life. */
@@ -63,11 +66,12 @@ typedef enum sandgate_variability {
     SANDGATE_CONTINUOUS = 3
 } sandgate_variability;
 
-/* What a value means; all travel as double. */
+/* What a value means; all but texts travel as double. */
 typedef enum sandgate_kind {
     SANDGATE_REAL = 0,
     SANDGATE_INTEGER = 1, /* whole numbers: counts, validity (0 valid, 1 empty, 2 outside, 3 blocked) */
-    SANDGATE_BOOLEAN = 2  /* 0 or 1 */
+    SANDGATE_BOOLEAN = 2, /* 0 or 1 */
+    SANDGATE_TEXT = 3     /* only by sandgate_set_text and sandgate_get_text */
 } sandgate_kind;
 
 /* A component. Made by sandgate_create..., freed by sandgate_free. */
@@ -115,7 +119,9 @@ typedef enum sandgate_capability {
     SANDGATE_CAN_VARY_STEPS = 2,      /* any h, and steps end at t + h exactly */
     SANDGATE_CAN_RUN_IN_PARALLEL = 4, /* several instances at once, from one thread or several */
     SANDGATE_CAN_USE_THREADS = 8,     /* sandgate_set_threads, without a change of results */
-    SANDGATE_CAN_LOG = 16             /* sandgate_set_logger */
+    SANDGATE_CAN_LOG = 16,            /* sandgate_set_logger */
+    SANDGATE_CAN_RECORD = 32,         /* the parameter log.path: an MCAP log of all traffic */
+    SANDGATE_CAN_PUBLISH = 64         /* the parameter zenoh.config: publications and set-points on Zenoh */
 } sandgate_capability;
 
 /*
@@ -188,6 +194,15 @@ int32_t sandgate_set(sandgate_instance *instance, const uint32_t *references, si
 /* Reads variables; arguments as in sandgate_set. Changes nothing, computes nothing. */
 int32_t sandgate_get(const sandgate_instance *instance, const uint32_t *references, size_t reference_count,
                      double *values, size_t value_count);
+
+/*
+ * Sets a variable of kind SANDGATE_TEXT (log.path: the file of an MCAP log of all traffic, "" for none). Allowed until
+ * initialisation ends. `value` is UTF-8 and ends with a zero byte.
+ */
+int32_t sandgate_set_text(sandgate_instance *instance, uint32_t reference, const char *value);
+
+/* Reads one. The text stays until the next sandgate_get_text on the instance, or sandgate_free. */
+int32_t sandgate_get_text(sandgate_instance *instance, uint32_t reference, const char **value);
 
 /* Advances from `t` (the current time) to t + h exactly. `report` may be NULL. */
 int32_t sandgate_step(sandgate_instance *instance, double t, double h, sandgate_step_report *report);

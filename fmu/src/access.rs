@@ -1,10 +1,13 @@
 //! Values between the typed functions of the standards and the component's plain f64.
 
+use std::ffi::{CString, c_char};
+
 use sandgate::component::{Error, ValueKind, VariableTable};
 
 use crate::fault::Fault;
-use crate::guard::{Out, Plain};
+use crate::guard::{Out, Plain, Text};
 use crate::instance::Instance;
+use crate::log::text;
 
 /// A type that values of one kind of variable have at the border.
 pub(crate) trait Value: Copy {
@@ -144,6 +147,37 @@ pub(crate) fn set<V: Value, C: Copy>(
     into.set(references, &entered.map_err(Fault::Border)?)
 }
 
+/// Sets texts, all or none.
+pub(crate) fn set_texts(
+    instance: &mut Instance,
+    references: &[u32],
+    texts: &[Text],
+) -> Result<(), Fault> {
+    let texts: Result<Vec<&str>, Fault> = texts.iter().map(|text| text.get("values")).collect();
+    instance.set_texts(references, &texts?)
+}
+
+/// Reads texts: pointers that are good until texts are read again.
+pub(crate) fn get_texts(
+    instance: &mut Instance,
+    references: &[u32],
+    out: &mut Out<*const c_char>,
+    count: usize,
+) -> Result<(), Fault> {
+    out.check(count, "values")?;
+    let found = instance.component.texts(references)?;
+    if found.len() != count {
+        return Err(Fault::border(format!(
+            "number of values: found {count}, allowed {}, one each reference",
+            found.len()
+        )));
+    }
+    let texts: Vec<CString> = found.into_iter().map(text).collect();
+    let pointers: Vec<*const c_char> = texts.iter().map(|text| text.as_ptr()).collect();
+    instance.texts = texts;
+    out.write(&pointers, "values")
+}
+
 /// Slopes of outputs; orders other than 1 are refused.
 pub(crate) fn output_derivatives(
     instance: &Instance,
@@ -177,7 +211,7 @@ pub(crate) fn no_variable_of_type(name: &str, count: usize) -> Result<(), Fault>
         return Ok(());
     }
     Err(Fault::border(format!(
-        "no variable is of type {name}; the types used are real (Float64), integer (Int64) and Boolean"
+        "no variable is of type {name}; the types used are real (Float64), integer (Int64), Boolean and String"
     )))
 }
 
@@ -238,6 +272,7 @@ fn kind_name(kind: ValueKind) -> &'static str {
         ValueKind::Real => "real",
         ValueKind::Integer => "integer",
         ValueKind::Boolean => "Boolean",
+        ValueKind::Text => "text",
     }
 }
 

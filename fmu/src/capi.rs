@@ -5,7 +5,7 @@ use std::ffi::{CString, c_char};
 use sandgate::component::{Causality, Mode, Start, ValueKind, Variability, Variable};
 use sandgate::scene::{self, Scene, SceneErrors};
 
-use crate::access::{Values, check_length};
+use crate::access::{Values, check_length, get_texts};
 use crate::fault::Fault;
 use crate::guard::{
     CLedger, CStepReport, CVariable, Environment, Handle, In, Need, Out, PlainLogger, Text, shield,
@@ -19,9 +19,12 @@ const HASH: usize = 64;
 /// What `solver.threads` allows too.
 const MOST_THREADS: u32 = 256;
 
-/// `sandgate_capability`: bits of what this library can do. All five are always there; what a build may leave out gets
-/// the next bits.
-const CAPABILITIES: u32 = 0b1_1111;
+/// `sandgate_capability`: bits of what this library can do. The first five are always there.
+const CAPABILITIES: u32 = 0b1_1111 | RECORD | PUBLISH;
+/// Whether it writes logs.
+const RECORD: u32 = if cfg!(feature = "record") { 1 << 5 } else { 0 };
+/// Whether it publishes on Zenoh.
+const PUBLISH: u32 = if cfg!(feature = "bus") { 1 << 6 } else { 0 };
 
 /// `sandgate_status`: the component's own numbers, and two for what never reaches it.
 fn code(result: Result<(), Fault>) -> i32 {
@@ -30,6 +33,7 @@ fn code(result: Result<(), Fault>) -> i32 {
         Err(Fault::Component(error)) => error.status().c_code,
         Err(Fault::Border(_)) => 3,
         Err(Fault::Broken(_)) => 6,
+        Err(Fault::Outside(_)) => 7,
     }
 }
 
@@ -201,8 +205,9 @@ fn info(row: &Variable, names: &[CString; 4]) -> CVariable {
             ValueKind::Real => 0,
             ValueKind::Integer => 1,
             ValueKind::Boolean => 2,
+            ValueKind::Text => 3,
         },
-        has_start: i32::from(matches!(row.start, Start::Exact(_))),
+        has_start: i32::from(row.start != Start::Calculated),
         is_element: i32::from(row.element_of.is_some()),
         element_of,
         element_index: u32::try_from(place).unwrap_or(u32::MAX),
@@ -251,7 +256,7 @@ pub(crate) extern "C" fn sandgate_exit_initialization(instance: Handle) -> i32 {
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn sandgate_initialize(instance: Handle, start: f64, stop: f64) -> i32 {
     code(instance.call("sandgate_initialize", Need::Sound, |i| {
-        Ok(i.component.initialize(start, end(stop))?)
+        i.initialize(start, end(stop))
     }))
 }
 
@@ -289,6 +294,24 @@ pub(crate) extern "C" fn sandgate_get(
         let mut found = vec![0.0; value_count];
         i.get(references, &mut found)?;
         values.write(&found, "values")
+    }))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn sandgate_set_text(instance: Handle, reference: u32, value: Text) -> i32 {
+    code(instance.call("sandgate_set_text", Need::Sound, |i| {
+        i.set_texts(&[reference], &[value.get("value")?])
+    }))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn sandgate_get_text(
+    instance: Handle,
+    reference: u32,
+    mut value: Out<*const c_char>,
+) -> i32 {
+    code(instance.call("sandgate_get_text", Need::Sound, |i| {
+        get_texts(i, &[reference], &mut value, 1)
     }))
 }
 
@@ -349,7 +372,7 @@ pub(crate) extern "C" fn sandgate_get_ledger(instance: Handle, mut ledger: Out<C
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn sandgate_save_size(instance: Handle, mut size: Out<usize>) -> i32 {
     code(instance.call("sandgate_save_size", Need::Sound, |i| {
-        size.write(&[i.save()?.bytes.len()], "size")
+        size.write(&[i.component.save()?.len()], "size")
     }))
 }
 
@@ -388,9 +411,7 @@ pub(crate) extern "C" fn sandgate_reset(instance: Handle) -> i32 {
 
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn sandgate_terminate(instance: Handle) -> i32 {
-    code(instance.call("sandgate_terminate", Need::Sound, |i| {
-        Ok(i.component.terminate()?)
-    }))
+    code(instance.call("sandgate_terminate", Need::Sound, |i| i.terminate()))
 }
 
 #[unsafe(no_mangle)]

@@ -11,6 +11,8 @@ pub(crate) enum Fault {
     Component(Error),
     /// The arguments or the instance do not allow the call at all.
     Border(String),
+    /// The log or the Zenoh session that parameters ask for cannot be opened or written.
+    Outside(String),
     /// An earlier call broke down in the middle, or this one did: the instance must be reset or given a state.
     Broken(String),
 }
@@ -19,7 +21,7 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Component(error) => error.fmt(f),
-            Self::Border(text) | Self::Broken(text) => f.write_str(text),
+            Self::Border(text) | Self::Outside(text) | Self::Broken(text) => f.write_str(text),
         }
     }
 }
@@ -31,6 +33,17 @@ impl From<Error> for Fault {
 }
 
 impl Fault {
+    /// As replies in a log call it.
+    #[cfg(feature = "record")]
+    pub(crate) fn code(&self) -> &'static str {
+        match self {
+            Self::Component(error) => error.status().reply,
+            Self::Border(_) => "bad_request",
+            Self::Outside(_) => "outside",
+            Self::Broken(_) => "internal",
+        }
+    }
+
     pub(crate) fn border(text: impl Into<String>) -> Self {
         Self::Border(text.into())
     }

@@ -7,7 +7,7 @@ use std::ffi::c_char;
 use sandgate::component::{Error, Mode};
 use sandgate::fmi::FmiVersion;
 
-use crate::access::{Flag, get, no_variable_of_type, output_derivatives, set};
+use crate::access::{Flag, get, get_texts, output_derivatives, set, set_texts};
 use crate::fault::{Fault, Status};
 use crate::guard::{Callbacks2, Handle, In, Need, Out, StateHandle, StateSlot, Text};
 use crate::instance::{Experiment, Instance, create};
@@ -66,7 +66,7 @@ pub(crate) extern "C" fn fmi2Instantiate(
                 "fmuType: found {kind}, allowed 1 (fmi2CoSimulation)"
             )));
         }
-        Instance::of_fmu(FmiVersion::V2, guid.get("fmuGUID")?, log)
+        Instance::of_fmu(FmiVersion::V2, named, guid.get("fmuGUID")?, log)
     })
 }
 
@@ -121,10 +121,8 @@ pub(crate) extern "C" fn fmi2ExitInitializationMode(c: Handle) -> Status {
 
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2Terminate(c: Handle) -> Status {
-    c.call("fmi2Terminate", Need::Sound, |i| {
-        Ok(i.component.terminate()?)
-    })
-    .into()
+    c.call("fmi2Terminate", Need::Sound, |i| i.terminate())
+        .into()
 }
 
 #[unsafe(no_mangle)]
@@ -176,12 +174,12 @@ pub(crate) extern "C" fn fmi2GetBoolean(
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2GetString(
     c: Handle,
-    _vr: In<u32>,
+    vr: In<u32>,
     n: usize,
-    _value: Out<*const c_char>,
+    mut value: Out<*const c_char>,
 ) -> Status {
-    c.call("fmi2GetString", Need::Sound, |_| {
-        no_variable_of_type("String", n)
+    c.call("fmi2GetString", Need::Sound, |i| {
+        get_texts(i, vr.slice(n, "vr")?, &mut value, n)
     })
     .into()
 }
@@ -224,12 +222,12 @@ pub(crate) extern "C" fn fmi2SetBoolean(
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2SetString(
     c: Handle,
-    _vr: In<u32>,
+    vr: In<u32>,
     n: usize,
-    _value: In<Text>,
+    value: In<Text>,
 ) -> Status {
-    c.call("fmi2SetString", Need::Sound, |_| {
-        no_variable_of_type("String", n)
+    c.call("fmi2SetString", Need::Sound, |i| {
+        set_texts(i, vr.slice(n, "vr")?, value.slice(n, "value")?)
     })
     .into()
 }
@@ -328,7 +326,7 @@ pub(crate) extern "C" fn fmi2SetRealInputDerivatives(
             )));
         }
         let slopes = value.slice(n, "value")?;
-        Ok(i.component.set_input_derivatives(vr, slopes)?)
+        i.set_slopes(vr, slopes)
     })
     .into()
 }

@@ -7,7 +7,9 @@ use std::ffi::c_char;
 
 use sandgate::fmi::FmiVersion;
 
-use crate::access::{Flag, get, no_variable_of_type, output_derivatives, set};
+use crate::access::{
+    Flag, get, get_texts, no_variable_of_type, output_derivatives, set, set_texts,
+};
 use crate::fault::{Fault, Status};
 use crate::guard::{
     Environment, Handle, In, IntermediateUpdate3, Logger3, Need, Out, StateHandle, StateSlot, Text,
@@ -97,7 +99,8 @@ pub(crate) extern "C" fn fmi3InstantiateCoSimulation(
 ) -> Handle {
     let log = Log::new(Sink::Fmi3(log, environment), logging != 0);
     create("fmi3InstantiateCoSimulation", log, |log| {
-        if name.get("instanceName")?.is_empty() {
+        let name = name.get("instanceName")?;
+        if name.is_empty() {
             return Err(Fault::border("instanceName is empty, expected a name"));
         }
         if event_mode_used != 0 {
@@ -106,7 +109,8 @@ pub(crate) extern "C" fn fmi3InstantiateCoSimulation(
             ));
         }
         let required = intermediate.slice(n_intermediate, "requiredIntermediateVariables")?;
-        let mut instance = Instance::of_fmu(FmiVersion::V3, token.get("instantiationToken")?, log)?;
+        let mut instance =
+            Instance::of_fmu(FmiVersion::V3, name, token.get("instantiationToken")?, log)?;
         let sets_inputs = instance.sets_inputs(required)?;
         let early_return_allowed = early_return_allowed != 0;
         // A callback that may neither read, set nor return early has nothing to do.
@@ -153,10 +157,8 @@ pub(crate) extern "C" fn fmi3ExitInitializationMode(c: Handle) -> Status {
 
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi3Terminate(c: Handle) -> Status {
-    c.call("fmi3Terminate", Need::Sound, |i| {
-        Ok(i.component.terminate()?)
-    })
-    .into()
+    c.call("fmi3Terminate", Need::Sound, |i| i.terminate())
+        .into()
 }
 
 #[unsafe(no_mangle)]
@@ -366,6 +368,35 @@ pub(crate) extern "C" fn fmi3SetBoolean(
     .into()
 }
 
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi3GetString(
+    c: Handle,
+    vr: In<u32>,
+    n: usize,
+    mut values: Out<*const c_char>,
+    n_values: usize,
+) -> Status {
+    c.call("fmi3GetString", Need::Sound, |i| {
+        get_texts(i, vr.slice(n, "valueReferences")?, &mut values, n_values)
+    })
+    .into()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn fmi3SetString(
+    c: Handle,
+    vr: In<u32>,
+    n: usize,
+    values: In<Text>,
+    n_values: usize,
+) -> Status {
+    c.call("fmi3SetString", Need::Sound, |i| {
+        let references = vr.slice(n, "valueReferences")?;
+        set_texts(i, references, values.slice(n_values, "values")?)
+    })
+    .into()
+}
+
 /// Getters and setters of types that no variable has.
 macro_rules! no_variables {
     ($($name:ident, $values:ty, $kind:literal;)*) => {$(
@@ -400,8 +431,6 @@ no_variables! {
     fmi3SetUInt32, In<u32>, "UInt32";
     fmi3GetUInt64, Out<u64>, "UInt64";
     fmi3SetUInt64, In<u64>, "UInt64";
-    fmi3GetString, Out<*const c_char>, "String";
-    fmi3SetString, In<Text>, "String";
 }
 
 #[unsafe(no_mangle)]

@@ -3,7 +3,7 @@
 use std::ffi::CString;
 
 use sandgate::component::{
-    Causality, Component, Error, Intermediate, StepReport, VariableTable, Wish,
+    Causality, Component, Error, Intermediate, Mode, StepReport, VariableTable, Wish,
 };
 use sandgate::fmi::{self, FmiVersion};
 use sandgate::scene::{self, Scene};
@@ -13,6 +13,7 @@ use crate::fault::{Fault, Status};
 use crate::guard::{
     Door, Environment, Handle, IntermediateUpdate3, Pause, SavedState, Text, embedded_scene, shield,
 };
+use crate::journal::{Journal, Moment};
 use crate::log::{Category, Log, text};
 
 /// FMI 2's setupExperiment: importers may leave it out.
@@ -55,6 +56,8 @@ pub(crate) struct Updates {
 pub(crate) struct Guest<'m, 'c> {
     moment: &'m mut Intermediate<'c>,
     log: &'m Log,
+    /// Inputs that were set.
+    inputs: Vec<(Vec<u32>, Vec<f64>)>,
     /// Whether an access broke down.
     pub(crate) is_hurt: bool,
 }
@@ -77,7 +80,9 @@ impl Values for Guest<'_, '_> {
     }
 
     fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
-        Ok(self.moment.set(references, values)?)
+        self.moment.set(references, values)?;
+        self.inputs.push((references.to_vec(), values.to_vec()));
+        Ok(())
     }
 }
 
@@ -98,17 +103,23 @@ impl Values for Instance {
     }
 
     fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
+        self.journal.asks_set(&self.component, references, values);
         self.component.set(references, values)?;
-        for note in self.component.take_notes() {
-            self.log.say(Category::Warning, Status::Warning, &note);
-        }
+        self.journal.set(&self.component, references, values);
+        self.tell_notes();
         Ok(())
     }
 }
 
 impl Updates {
     /// Calls the importer after an internal step.
-    fn tell(self, moment: &mut Intermediate<'_>, log: &Log, door: &Door<'_>) -> Wish {
+    fn tell(
+        self,
+        moment: &mut Intermediate<'_>,
+        log: &Log,
+        journal: &mut Journal,
+        door: &Door<'_>,
+    ) -> Wish {
         let pause = Pause {
             time: moment.time(),
             set_requested: self.sets_inputs,
@@ -117,13 +128,21 @@ impl Updates {
         let mut guest = Guest {
             moment,
             log,
+            inputs: Vec::new(),
             is_hurt: false,
         };
         let wanted = door.open(&mut guest, || self.callback.call(self.environment, pause));
-        match wanted {
+        let wish = match wanted {
             Some(time) if self.early_return_allowed => Wish::EndAt(time),
             _ => Wish::GoOn,
-        }
+        };
+        let told = Moment {
+            time: pause.time,
+            inputs: guest.inputs,
+            wish,
+        };
+        journal.moment(moment.component(), &told);
+        wish
     }
 }
 
@@ -131,6 +150,8 @@ impl Updates {
 pub(crate) struct Instance {
     pub(crate) component: Component,
     pub(crate) log: Log,
+    /// Its MCAP log.
+    pub(crate) journal: Journal,
     pub(crate) experiment: Experiment,
     /// Status of the last doStep, for fmi2GetStatus.
     pub(crate) last_step: Status,
@@ -138,6 +159,8 @@ pub(crate) struct Instance {
     pub(crate) updates: Option<Updates>,
     /// Message of the last refused or failed call, for sandgate_last_error.
     pub(crate) last_error: CString,
+    /// Texts that were read last, as C has them.
+    pub(crate) texts: Vec<CString>,
     /// Text of the variables with zero bytes behind it, for sandgate_variable_info.
     pub(crate) names: Vec<[CString; 4]>,
     threads: usize,
@@ -153,10 +176,12 @@ impl Instance {
         Ok(Self {
             component,
             log,
+            journal: Journal::new(None, &scene.name),
             experiment: Experiment::default(),
             last_step: Status::Ok,
             updates: None,
             last_error: CString::default(),
+            texts: Vec::new(),
             names: Vec::new(),
             threads: 1,
             broken: None,
@@ -164,11 +189,17 @@ impl Instance {
     }
 
     /// An FMU's instance, from the scene inside the library, if `token` belongs to it.
-    pub(crate) fn of_fmu(version: FmiVersion, token: &str, log: Log) -> Result<Self, Fault> {
+    pub(crate) fn of_fmu(
+        version: FmiVersion,
+        name: &str,
+        token: &str,
+        log: Log,
+    ) -> Result<Self, Fault> {
         let source = embedded_scene().map_err(|error| Fault::border(error.to_string()))?;
         let scene = scene::parse("resources/scene.toml", &source)
             .map_err(|errors| Fault::border(errors.to_string()))?;
-        let instance = Self::new(&scene, log)?;
+        let mut instance = Self::new(&scene, log)?;
+        instance.journal = Journal::new(Some(version), name);
         let expected = fmi::token(&instance.component, version);
         if token != expected {
             return Err(Fault::border(format!(
@@ -205,11 +236,72 @@ impl Instance {
         self.broken = Some(how.to_owned());
     }
 
-    /// Keeps the message of a fault and passes it on.
-    pub(crate) fn report(&mut self, call: &str, fault: &Fault) {
-        let message = format!("{call}: {fault}");
-        self.last_error = text(&message);
-        self.log.say(Category::Error, Status::Error, &message);
+    /// A call is over: keeps the message of a fault and passes it on, and tells the log.
+    pub(crate) fn answered(&mut self, call: &str, fault: Option<&Fault>) {
+        if let Some(fault) = fault {
+            let message = format!("{call}: {fault}");
+            self.last_error = text(&message);
+            self.log.say(Category::Error, Status::Error, &message);
+        }
+        self.journal
+            .reply(&self.component, fault.map_or(Ok(()), Err));
+        if let Some(complaint) = self.journal.take_complaint() {
+            self.log.say(Category::Warning, Status::Warning, &complaint);
+        }
+        if let Some(event) = self.journal.take_event() {
+            self.event(|| event);
+        }
+    }
+
+    /// Passes on which inputs were clamped.
+    fn tell_notes(&mut self) {
+        for note in self.component.take_notes() {
+            self.log.say(Category::Warning, Status::Warning, &note);
+            self.journal.warning(&self.component, &note);
+        }
+    }
+
+    /// Sets texts, all or none.
+    pub(crate) fn set_texts(&mut self, references: &[u32], texts: &[&str]) -> Result<(), Fault> {
+        for (reference, text) in references.iter().zip(texts) {
+            if let Some(row) = self.component.variables().by_reference(*reference) {
+                Journal::check_text(&row.name, text)?;
+            }
+        }
+        Ok(self.component.set_texts(references, texts)?)
+    }
+
+    /// The instance is at its end: so is its log. What fails now is told to the importer's logger.
+    pub(crate) fn finish(mut self, reason: &str) {
+        self.end_journal(reason);
+        if let Some(complaint) = self.journal.take_complaint() {
+            self.log.say(Category::Warning, Status::Warning, &complaint);
+        }
+    }
+
+    fn end_journal(&mut self, reason: &str) {
+        if self.broken.is_some() {
+            self.journal.end("broken");
+        } else if let Err(fault) = self.journal.finish(&self.component, reason) {
+            let message = fault.to_string();
+            self.log.say(Category::Error, Status::Error, &message);
+        }
+    }
+
+    /// Stepping -> terminated, with the end of the log.
+    pub(crate) fn terminate(&mut self) -> Result<(), Fault> {
+        self.journal.asks(&self.component);
+        self.component.terminate()?;
+        self.journal.reply(&self.component, Ok(()));
+        self.journal.finish(&self.component, "terminated")
+    }
+
+    /// Slopes of inputs for the next step.
+    pub(crate) fn set_slopes(&mut self, references: &[u32], slopes: &[f64]) -> Result<(), Fault> {
+        self.journal.asks_set(&self.component, references, slopes);
+        self.component.set_input_derivatives(references, slopes)?;
+        self.journal.slopes(&self.component, references, slopes);
+        Ok(())
     }
 
     /// Logs what happened; the text is made only if somebody wants it.
@@ -221,7 +313,7 @@ impl Instance {
 
     /// One communication step.
     pub(crate) fn step(&mut self, t: f64, h: f64) -> Result<StepReport, Fault> {
-        self.step_with(t, h, Component::do_step)
+        self.step_with(t, h, |component, _, t, h| component.do_step(t, h))
     }
 
     /// One communication step with the importer's intermediate updates, if it wants any.
@@ -235,12 +327,12 @@ impl Instance {
             return self.step(t, h);
         };
         let log = self.log.clone();
-        let report = self.step_with(t, h, |component, t, h| {
-            component.do_step_watched(t, h, &mut |moment| updates.tell(moment, &log, door))
+        let report = self.step_with(t, h, |component, journal, t, h| {
+            let mut tell =
+                |moment: &mut Intermediate<'_>| updates.tell(moment, &log, journal, door);
+            component.do_step_watched(t, h, &mut tell)
         });
-        for note in self.component.take_notes() {
-            self.log.say(Category::Warning, Status::Warning, &note);
-        }
+        self.tell_notes();
         report
     }
 
@@ -248,10 +340,14 @@ impl Instance {
         &mut self,
         t: f64,
         h: f64,
-        step: impl FnOnce(&mut Component, f64, f64) -> Result<StepReport, Error>,
+        step: impl FnOnce(&mut Component, &mut Journal, f64, f64) -> Result<StepReport, Error>,
     ) -> Result<StepReport, Fault> {
         self.last_step = Status::Error;
-        let report = step(&mut self.component, t, h)?;
+        self.journal.asks_step(&self.component, t, h);
+        self.journal.before_step(&mut self.component)?;
+        let report = step(&mut self.component, &mut self.journal, t, h)
+            .inspect_err(|_| self.journal.failed_step())?;
+        self.journal.step(&self.component, &report, t, h)?;
         self.last_step = Status::Ok;
         self.event(|| {
             format!(
@@ -268,11 +364,14 @@ impl Instance {
 
     /// Back to start values. After a breakdown nothing of the old component is used again.
     pub(crate) fn reset(&mut self) -> Result<(), Fault> {
+        self.journal.asks(&self.component);
         if self.broken.is_some() {
             self.renew()?;
         } else {
             self.component.reset()?;
         }
+        self.journal.reply(&self.component, Ok(()));
+        self.journal.end("reset");
         self.experiment = Experiment::default();
         self.last_step = Status::Ok;
         self.event(|| "reset".to_owned());
@@ -280,9 +379,12 @@ impl Instance {
     }
 
     /// Everything, as bytes.
-    pub(crate) fn save(&self) -> Result<SavedState, Fault> {
+    pub(crate) fn save(&mut self) -> Result<SavedState, Fault> {
+        self.journal.asks(&self.component);
+        let bytes = self.component.save()?;
+        self.journal.saved(&self.component, &bytes)?;
         Ok(SavedState {
-            bytes: self.component.save()?,
+            bytes,
             experiment: Some(self.experiment),
         })
     }
@@ -293,6 +395,7 @@ impl Instance {
         bytes: &[u8],
         experiment: Option<Experiment>,
     ) -> Result<(), Fault> {
+        self.journal.asks(&self.component);
         if self.broken.is_some() {
             let mut fresh = self.fresh()?;
             fresh.restore(bytes)?;
@@ -305,7 +408,7 @@ impl Instance {
             self.experiment = experiment;
         }
         self.event(|| format!("state of t = {} s restored", self.component.time()));
-        Ok(())
+        self.journal.restored(&self.component, bytes)
     }
 
     /// Threads of the sweeps; 0 means all cores. Results do not depend on it.
@@ -325,7 +428,33 @@ impl Instance {
 
     /// Leaves initialisation: the first gauges are there.
     pub(crate) fn exit_initialization(&mut self) -> Result<(), Fault> {
-        self.component.exit_initialization()?;
+        self.leave_initialization(Mode::Initialization, Component::exit_initialization)
+    }
+
+    /// Enters and leaves initialisation in one.
+    pub(crate) fn initialize(&mut self, start: f64, stop: Option<f64>) -> Result<(), Fault> {
+        self.leave_initialization(Mode::Instantiated, |c| c.initialize(start, stop))
+    }
+
+    /// The log is opened before, so that a path that cannot be written is refused and nothing has happened.
+    fn leave_initialization(
+        &mut self,
+        from: Mode,
+        leave: impl FnOnce(&mut Component) -> Result<(), Error>,
+    ) -> Result<(), Fault> {
+        let opened = self.component.mode() == from && {
+            self.component.settle()?;
+            self.journal.open(&self.component)?
+        };
+        let left = leave(&mut self.component);
+        if opened && left.is_err() {
+            self.journal.discard();
+        }
+        left?;
+        if opened {
+            self.journal.asks(&self.component);
+            self.journal.initialized(&self.component)?;
+        }
         self.event(|| format!("initialised at t = {} s", self.component.time()));
         Ok(())
     }
@@ -338,6 +467,8 @@ impl Instance {
 
     fn renew(&mut self) -> Result<(), Fault> {
         self.component = self.fresh()?;
+        // As a reset does.
+        self.component.reset()?;
         self.broken = None;
         Ok(())
     }
@@ -345,6 +476,7 @@ impl Instance {
     fn fresh(&self) -> Result<Component, Fault> {
         let mut fresh = Component::new(self.component.base_scene())?;
         fresh.set_threads(self.threads);
+        fresh.set_host_settings(self.component.host_settings().clone());
         Ok(fresh)
     }
 }

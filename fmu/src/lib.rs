@@ -13,4 +13,9 @@ mod fmi2;
 mod fmi3;
 mod guard;
 mod instance;
+#[cfg(feature = "record")]
+mod journal;
+#[cfg(not(feature = "record"))]
+#[path = "no_journal.rs"]
+mod journal;
 mod log;

@@ -3,6 +3,7 @@
 
 use super::refusal::{Code, Refusal};
 use super::verb::Verb;
+use crate::wire::foxglove::LogLevel;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use serde_json::{Map, Value};
@@ -48,6 +49,30 @@ pub(super) fn text(map: &mut Map<String, Value>, field: &str) -> Result<Option<S
         None => Ok(None),
         Some(Value::String(text)) if (1..=64).contains(&text.chars().count()) => Ok(Some(text)),
         Some(other) => Err(wrong(field, &other, allowed)),
+    }
+}
+
+/// Longest line that `log` takes, in characters.
+const LONGEST_LINE: usize = 4096;
+
+/// The line of `log` and how grave it is; none if there is no line.
+pub(super) fn line(map: &mut Map<String, Value>) -> Result<Option<(LogLevel, String)>, Refusal> {
+    let level = match map.remove("level") {
+        None => LogLevel::Info,
+        Some(Value::String(level)) if level == "info" => LogLevel::Info,
+        Some(Value::String(level)) if level == "warning" => LogLevel::Warning,
+        Some(Value::String(level)) if level == "error" => LogLevel::Error,
+        Some(other) => return Err(wrong("level", &other, "info, warning or error")),
+    };
+    match map.remove("message") {
+        None => Ok(None),
+        Some(Value::String(text)) if (1..=LONGEST_LINE).contains(&text.chars().count()) => {
+            Ok(Some((level, text)))
+        }
+        Some(other) => {
+            let allowed = format!("a string of 1 to {LONGEST_LINE} characters");
+            Err(wrong("message", &other, &allowed))
+        }
     }
 }
 

@@ -37,7 +37,7 @@ pub use protocol::Protocol;
 pub use refusal::{Code, Refusal};
 pub use reply::Reply;
 pub use request::Request;
-pub use serve::{Outlet, ServeOptions, Server};
+pub use serve::{Beside, Outlet, ServeOptions, Server, ZenohConfig};
 pub use set_point::SetPoint;
 pub use status::Status;
 pub use verb::Verb;

@@ -36,7 +36,8 @@ pub struct Protocol {
     broken: bool,
 }
 
-type Fields = Map<String, Value>;
+/// Fields of a reply.
+pub(super) type Fields = Map<String, Value>;
 
 impl Protocol {
     /// A protocol for the component at `base` (`sandgate/v1/INSTANCE`). `free_running`: simulated over wall time, or
@@ -142,12 +143,7 @@ impl Protocol {
             protocol.whole()?;
             let inputs = [(point.variable.clone(), point.values.clone())];
             let assignment = Assignment::resolve(component.variables(), &inputs)?;
-            let source = if point.client.is_empty() {
-                "set-point"
-            } else {
-                &point.client
-            };
-            assign(component, &assignment, source, observer)
+            assign(component, &assignment, point.source(), observer)
         })
     }
 
@@ -213,7 +209,7 @@ impl Protocol {
     ) -> Result<Fields, Refusal> {
         if !matches!(
             request.verb,
-            Verb::Describe | Verb::Status | Verb::Reset | Verb::Restore
+            Verb::Describe | Verb::Status | Verb::Log | Verb::Reset | Verb::Restore
         ) {
             self.whole()?;
         }
@@ -239,8 +235,14 @@ impl Protocol {
                 Ok(Fields::new())
             }
             Verb::Reset => {
-                component.reset()?;
+                let assignment = Assignment::resolve(component.variables(), &request.inputs)?;
+                reset_with(component, &assignment)?;
                 self.new_epoch(component, AppliedEvent::Reset, request, observer);
+                if !assignment.references.is_empty() {
+                    let Assignment { references, values } = &assignment;
+                    observer.on_input(component, references, values, source(request));
+                    tell_clamped(component, observer);
+                }
                 self.begin(component, observer, source(request))?;
                 Ok(Fields::new())
             }
@@ -255,6 +257,12 @@ impl Protocol {
                 component.restore(&request.state)?;
                 self.new_epoch(component, AppliedEvent::Restore, request, observer);
                 Ok(one("state_hash", component.state_hash().into()))
+            }
+            Verb::Log => {
+                if let Some((level, text)) = &request.line {
+                    observer.on_log(component.time(), *level, source(request), text);
+                }
+                Ok(Fields::new())
             }
             Verb::Terminate => {
                 component.terminate()?;
@@ -334,7 +342,7 @@ impl Protocol {
         })))
     }
 
-    fn description(&self, component: &Component) -> Fields {
+    pub(super) fn description(&self, component: &Component) -> Fields {
         let scene = component.scene();
         let verbs: Fields = Verb::all()
             .map(|verb| {
@@ -391,6 +399,29 @@ fn assign(
         &assignment.values,
         source,
     );
+    tell_clamped(component, observer);
+    Ok(())
+}
+
+/// Which inputs were taken but not as they were asked for.
+fn tell_clamped(component: &mut Component, observer: &mut dyn Observer) {
+    for note in component.take_notes() {
+        observer.on_log(component.time(), LogLevel::Warning, "bus", &note);
+    }
+}
+
+/// Back to the start, with these variables set, fixed parameters among them; all or nothing.
+fn reset_with(component: &mut Component, assignment: &Assignment) -> Result<(), Refusal> {
+    if assignment.references.is_empty() {
+        return Ok(component.reset()?);
+    }
+    let before = component.save()?;
+    component.reset()?;
+    let set = component.set(&assignment.references, &assignment.values);
+    if let Err(error) = set.and_then(|()| component.settle()) {
+        component.restore(&before)?;
+        return Err(error.into());
+    }
     Ok(())
 }
 

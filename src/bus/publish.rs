@@ -7,9 +7,9 @@ use super::status::{Shared, lock};
 use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::convert::{self, Output};
 use crate::wire::foxglove::{FrameTransform, Log, LogLevel, PointCloud, SceneUpdate};
-use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Command, Gauge, StepStats};
+use crate::wire::messages::{Applied, AppliedEvent, Command, Gauge, StepStats};
 use crate::wire::picture::scene_update;
-use crate::wire::{Described, Observer, keys, schema};
+use crate::wire::{Described, Moment, Observer, Pending, keys, schema};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -35,7 +35,7 @@ pub(super) type LastValues = Mutex<BTreeMap<Arc<str>, Publication>>;
 pub(super) struct Publisher {
     base: String,
     outputs: Vec<(Arc<str>, Output)>,
-    pending: Vec<AppliedInput>,
+    pending: Pending,
     /// Counts batches: every output is published once a batch.
     sequence: u64,
     queue: SyncSender<Vec<Publication>>,
@@ -60,7 +60,7 @@ impl Publisher {
         Self {
             base: base.to_owned(),
             outputs,
-            pending: Vec::new(),
+            pending: Pending::default(),
             sequence: 0,
             queue,
             last,
@@ -117,17 +117,7 @@ impl Publisher {
         h: f64,
         source: &str,
     ) -> Publication {
-        let message = Applied {
-            timestamp: Some(convert::timestamp(t)),
-            event: event as i32,
-            step,
-            t_bits: t.to_bits(),
-            h_bits: h.to_bits(),
-            t,
-            h,
-            inputs: std::mem::take(&mut self.pending),
-            source: source.to_owned(),
-        };
+        let message: Applied = self.pending.applied(event, step, (t, h), source);
         publication(keys::applied(&self.base).into(), &message)
     }
 }
@@ -180,21 +170,19 @@ impl Observer for Publisher {
         values: &[f64],
         source: &str,
     ) {
-        let mut rest = values;
-        for &reference in references {
-            let Some(variable) = component.variables().by_reference(reference) else {
-                continue;
-            };
-            let (mine, others) = rest.split_at(variable.len().min(rest.len()));
-            rest = others;
-            self.pending.push(AppliedInput {
-                reference,
-                name: variable.name.clone(),
-                bits: mine.iter().map(|x| x.to_bits()).collect(),
-                values: mine.to_vec(),
-                source: source.to_owned(),
-            });
-        }
+        self.pending.set(component, references, values, source);
+    }
+
+    fn on_slopes(&mut self, c: &Component, inputs: &[ValueReference], slopes: &[f64], who: &str) {
+        self.pending.slopes(c, inputs, slopes, who);
+    }
+
+    fn on_moment(&mut self, component: &Component, moment: &Moment, source: &str) {
+        self.pending.moment(component, moment, source);
+    }
+
+    fn on_failed_step(&mut self) {
+        self.pending.forget_moments();
     }
 
     fn on_step(

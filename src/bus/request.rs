@@ -6,6 +6,7 @@ use super::fields::{self, bad};
 use super::json;
 use super::refusal::{Code, Refusal};
 use super::verb::Verb;
+use crate::wire::foxglove::LogLevel;
 use serde_json::Value;
 
 /// A request, checked as far as it can be without the component.
@@ -31,6 +32,8 @@ pub struct Request {
     pub realtime_factor: Option<f64>,
     /// State of `restore`.
     pub state: Vec<u8>,
+    /// Line of `log`, and how grave it is.
+    pub line: Option<(LogLevel, String)>,
     /// SHA-256 of the body, whatever its white space and order of keys.
     pub fingerprint: [u8; 32],
 }
@@ -77,6 +80,7 @@ impl Request {
             expect_step: fields::whole(&mut map, "expect_step", 0, u64::MAX)?,
             realtime_factor: fields::factor(&mut map)?,
             state: fields::state(&mut map)?,
+            line: fields::line(&mut map)?,
             fingerprint,
         };
         if verb.changes() && request.req.is_empty() {
@@ -88,6 +92,7 @@ impl Request {
         let missing = match verb {
             Verb::Set if request.inputs.is_empty() => "inputs",
             Verb::Restore if request.state.is_empty() => "state",
+            Verb::Log if request.line.is_none() => "message",
             _ => return Ok(request),
         };
         Err(bad(format!(

@@ -17,6 +17,16 @@ pub struct SetPoint {
 }
 
 impl SetPoint {
+    /// Who sent it, as logs and `out/applied` name it.
+    #[must_use]
+    pub fn source(&self) -> &str {
+        if self.client.is_empty() {
+            "set-point"
+        } else {
+            &self.client
+        }
+    }
+
     /// Reads a set-point.
     ///
     /// # Errors

@@ -104,6 +104,8 @@ impl Status {
 pub(super) struct Shared {
     status: Mutex<Status>,
     busy: Mutex<Option<Busy>>,
+    /// Why the log ended before its time, if it did.
+    log_failure: Mutex<Option<String>>,
     /// Set-points that wait for the stepping thread.
     pub(super) waiting_set_points: AtomicUsize,
     /// Set-points refused since the start.
@@ -132,6 +134,7 @@ impl Shared {
         Self {
             status: Mutex::new(status),
             busy: Mutex::new(None),
+            log_failure: Mutex::new(None),
             waiting_set_points: AtomicUsize::new(0),
             refused_set_points: AtomicU64::new(0),
             dropped_publications: AtomicU64::new(0),
@@ -142,6 +145,14 @@ impl Shared {
 
     pub(super) fn update(&self, status: Status) {
         *lock(&self.status) = status;
+    }
+
+    pub(super) fn has_log_failure(&self) -> bool {
+        lock(&self.log_failure).is_some()
+    }
+
+    pub(super) fn set_log_failure(&self, failure: Option<String>) {
+        *lock(&self.log_failure) = failure;
     }
 
     pub(super) fn set_busy(&self, busy: Option<Busy>) {
@@ -170,6 +181,8 @@ impl Shared {
         ] {
             map.insert(name.into(), counter.load(Relaxed).into());
         }
+        let failure = lock(&self.log_failure).clone();
+        map.insert("log_failure".into(), failure.into());
         let lost = self.orchestrator_lost.load(Relaxed);
         map.insert("orchestrator_lost".into(), lost.into());
         map

@@ -81,6 +81,7 @@ impl Stepper<'_> {
         let mut overdue = 0;
         while !stop.load(Relaxed) {
             self.write_notes(observer);
+            self.tell_trouble(observer);
             let wait = match self.protocol.free_running() {
                 None => {
                     if pace.take().is_some() {
@@ -165,7 +166,11 @@ impl Stepper<'_> {
                     status: "",
                     reply: String::new(),
                 };
-                observer.on_command(&self.command(&mut exchange, CommandKind::Request));
+                observer.on_command(&command(
+                    self.component.time(),
+                    &mut exchange,
+                    CommandKind::Request,
+                ));
                 let reply = self
                     .protocol
                     .handle(&mut self.component, &request, observer);
@@ -180,7 +185,11 @@ impl Stepper<'_> {
                 self.publish_status();
                 self.shared.set_busy(None);
                 asked.answer(reply);
-                observer.on_reply(&self.command(&mut exchange, CommandKind::Reply));
+                observer.on_reply(&command(
+                    self.component.time(),
+                    &mut exchange,
+                    CommandKind::Reply,
+                ));
                 ends
             }
         }
@@ -235,8 +244,16 @@ impl Stepper<'_> {
             match note {
                 Note::Refused(text) => self.warn(&text, observer),
                 Note::Call(mut exchange) => {
-                    observer.on_command(&self.command(&mut exchange, CommandKind::Request));
-                    observer.on_reply(&self.command(&mut exchange, CommandKind::Reply));
+                    observer.on_command(&command(
+                        self.component.time(),
+                        &mut exchange,
+                        CommandKind::Request,
+                    ));
+                    observer.on_reply(&command(
+                        self.component.time(),
+                        &mut exchange,
+                        CommandKind::Reply,
+                    ));
                 }
             }
         }
@@ -246,34 +263,44 @@ impl Stepper<'_> {
         observer.on_log(self.component.time(), LogLevel::Warning, "bus", text);
     }
 
+    /// `status` has why the log ended, and `out/log` has it once.
+    fn tell_trouble(&mut self, observer: &mut dyn Observer) {
+        if self.shared.has_log_failure() {
+            return;
+        }
+        if let Some(why) = observer.trouble() {
+            self.shared.set_log_failure(Some(why.clone()));
+            observer.on_log(self.component.time(), LogLevel::Error, "bus", &why);
+        }
+    }
+
     fn publish_status(&self) {
         self.shared.update(self.protocol.status(&self.component));
     }
+}
 
-    /// One half of a call for the log; takes its text.
-    fn command(&self, exchange: &mut Exchange, kind: CommandKind) -> Command {
-        let time = self.component.time();
-        let request = kind == CommandKind::Request;
-        let body = if request {
-            &mut exchange.body
+/// One half of a call for the log, at a simulated time [s]; takes its text.
+pub(super) fn command(time: f64, exchange: &mut Exchange, kind: CommandKind) -> Command {
+    let request = kind == CommandKind::Request;
+    let body = if request {
+        &mut exchange.body
+    } else {
+        &mut exchange.reply
+    };
+    Command {
+        timestamp: Some(timestamp(time)),
+        time,
+        kind: kind as i32,
+        interface: "rpc".into(),
+        verb: exchange.verb.clone(),
+        request: exchange.req.clone(),
+        client: exchange.client.clone(),
+        body: std::mem::take(body),
+        status: if request {
+            String::new()
         } else {
-            &mut exchange.reply
-        };
-        Command {
-            timestamp: Some(timestamp(time)),
-            time,
-            kind: kind as i32,
-            interface: "rpc".into(),
-            verb: exchange.verb.clone(),
-            request: exchange.req.clone(),
-            client: exchange.client.clone(),
-            body: std::mem::take(body),
-            status: if request {
-                String::new()
-            } else {
-                exchange.status.into()
-            },
-        }
+            exchange.status.into()
+        },
     }
 }
 

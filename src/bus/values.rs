@@ -69,7 +69,7 @@ pub(super) fn rows<'t>(
         None => Ok(table
             .rows()
             .iter()
-            .filter(|v| v.element_of.is_none())
+            .filter(|v| v.element_of.is_none() && !table.is_for_host(v))
             .collect()),
     }
 }
@@ -111,11 +111,13 @@ pub(super) fn describe(table: &VariableTable) -> Value {
                 ValueKind::Real => "real",
                 ValueKind::Integer => "integer",
                 ValueKind::Boolean => "boolean",
+                ValueKind::Text => "text",
             },
             "unit": v.unit,
             "shape": v.shape,
             "start": match &v.start {
                 Start::Exact(values) => show(v, values),
+                Start::Empty => Value::from(""),
                 Start::Calculated => Value::Null,
             },
             "min": v.range.map_or(Value::Null, |(min, _)| number(min)),
@@ -125,7 +127,7 @@ pub(super) fn describe(table: &VariableTable) -> Value {
     table
         .rows()
         .iter()
-        .filter(|v| v.element_of.is_none())
+        .filter(|v| v.element_of.is_none() && !table.is_for_host(v))
         .map(describe_one)
         .collect()
 }
@@ -150,11 +152,13 @@ fn find<'t>(
     name: &str,
     wanted: impl Fn(&Variable) -> bool,
 ) -> Result<&'t Variable, Refusal> {
-    table.by_name(name).ok_or_else(|| {
+    // What is for the host of a component is not for those who reach it from outside.
+    let known = table.by_name(name).filter(|v| !table.is_for_host(v));
+    known.ok_or_else(|| {
         let known: Vec<_> = table
             .rows()
             .iter()
-            .filter(|v| v.element_of.is_none() && wanted(v))
+            .filter(|v| v.element_of.is_none() && !table.is_for_host(v) && wanted(v))
             .map(|v| v.name.as_str())
             .collect();
         let known = match known.as_slice() {

@@ -25,12 +25,14 @@ pub enum Verb {
     Save,
     /// Back to a saved state.
     Restore,
+    /// A line for people, into the log and on `out/log`.
+    Log,
     /// Ends the component and the server.
     Terminate,
 }
 
 /// One row a verb: name, fields besides `req` and `client`, whether it changes something (then `req` is a must).
-const VERBS: [(Verb, &str, &[&str], bool); 11] = [
+const VERBS: [(Verb, &str, &[&str], bool); 12] = [
     (Verb::Describe, "describe", &[], false),
     (Verb::Status, "status", &[], false),
     (Verb::Get, "get", &["outputs"], false),
@@ -48,9 +50,10 @@ const VERBS: [(Verb, &str, &[&str], bool); 11] = [
     ),
     (Verb::Run, "run", &["realtime_factor", "expect_step"], true),
     (Verb::Pause, "pause", &["expect_step"], true),
-    (Verb::Reset, "reset", &["expect_step"], true),
+    (Verb::Reset, "reset", &["inputs", "expect_step"], true),
     (Verb::Save, "save", &["expect_step"], false),
     (Verb::Restore, "restore", &["state", "expect_step"], true),
+    (Verb::Log, "log", &["message", "level"], true),
     (Verb::Terminate, "terminate", &["expect_step"], true),
 ];
 

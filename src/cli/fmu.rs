@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::{CliError, load_scene, quantity, say};
+use crate::fmi::library::Kind;
 use crate::fmi::{Error, Extent, FmiVersion, Packing, Platform, cross, library, pack_with};
 
 /// What may be typed after `sandgate fmu`.
@@ -26,6 +27,10 @@ pub(super) struct Args {
     /// Platforms whose binaries go into the FMU: x86_64-linux, x86_64-windows (with cargo-zigbuild)
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = platform)]
     platform: Vec<Platform>,
+    /// Pack the library with Zenoh: the parameter zenoh.config then publishes gauges and takes set-points; the archive is
+    /// larger. With --library, say that the given one has it
+    #[arg(long, conflicts_with_all = ["portable", "platform"])]
+    zenoh: bool,
     /// How far the reference results in the archive go, in simulated time; 0: initial values only [default: what about
     /// two seconds of computing reach, at least one step]
     #[arg(long, value_name = "TIME", value_parser = quantity::time)]
@@ -50,6 +55,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         version,
         libraries: libraries(args)?,
         reference: args.reference.map_or(Extent::Short, Extent::Until),
+        kind: args.kind(),
     };
     pack_with(&scene, &packing, &output)?;
     let size = std::fs::metadata(&output).map_or(0, |file| file.len());
@@ -62,12 +68,21 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     ))
 }
 
+impl Args {
+    fn kind(&self) -> Kind {
+        match self.zenoh {
+            true => Kind::Zenoh,
+            false => Kind::Plain,
+        }
+    }
+}
+
 /// The shared libraries that were given, found or built.
 fn libraries(args: &Args) -> Result<Vec<PathBuf>, Error> {
     if !args.library.is_empty() {
         let given = args.library.iter();
         return given
-            .map(|path| library::locate(Some(path.as_path())))
+            .map(|path| library::locate_kind(Some(path.as_path()), args.kind()))
             .collect();
     }
     let mut platforms = args.platform.clone();
@@ -78,7 +93,7 @@ fn libraries(args: &Args) -> Result<Vec<PathBuf>, Error> {
     platforms.sort_by_key(|platform| platform.name());
     platforms.dedup();
     let found = platforms.into_iter().map(|platform| match platform {
-        Platform::X64Linux if !args.portable => library::locate(None),
+        Platform::X64Linux if !args.portable => library::locate_kind(None, args.kind()),
         _ => cross::portable(platform),
     });
     found.collect()

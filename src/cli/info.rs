@@ -74,6 +74,7 @@ fn variables(component: &Component) -> String {
         let start = match &v.start {
             Start::Exact(values) if values.len() == 1 => format!("{}", values[0]),
             Start::Exact(values) => format!("{} values", values.len()),
+            Start::Empty => "\"\"".to_owned(),
             Start::Calculated => String::new(),
         };
         let shape: String = v.shape.iter().map(|n| format!(" [{n} values]")).collect();

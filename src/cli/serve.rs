@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::{CliError, load_scene, quantity, say, stop};
-use crate::bus::{Lost, ServeOptions, Server, WhenLost};
+use crate::bus::{Lost, ServeOptions, Server, WhenLost, ZenohConfig};
 use crate::component::{Component, Mode};
 use crate::wire::{Observer, Unobserved};
 use log::Log;
@@ -89,7 +89,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         instance: args.instance.clone().unwrap_or_else(|| scene.name.clone()),
         listen: args.listen.clone(),
         connect: args.connect.clone(),
-        config_file: args.zenoh_config.clone(),
+        config: args.zenoh_config.clone().map(ZenohConfig::File),
         allow_open_listener: args.allow_open_listener,
         realtime_factor: args.realtime_factor,
         lost: args.lost_after.map(|seconds| Lost {

@@ -32,6 +32,7 @@ impl Component {
                 Some(Source::Threads) if *value as usize == self.threads => {}
                 Some(Source::Threads) => self.set_threads(*value as usize),
                 Some(Source::SaturateInputs) => self.life.saturate_inputs = *value != 0.0,
+                Some(Source::LogRequired) => self.host.log_required = *value != 0.0,
                 Some(Source::Adjustable(i)) => {
                     if let Some(place) = self.life.parameters.get_mut(*i) {
                         *place = *value;
@@ -110,6 +111,22 @@ impl Component {
         Ok(())
     }
 
+    /// Slopes that inputs have for the next step: reference and slope in the variable's unit per second. Those of 0 are
+    /// left out.
+    #[must_use]
+    pub fn input_slopes(&self) -> Vec<(ValueReference, f64)> {
+        let inputs = &self.life.inputs;
+        let slope = |source: &Source| match source {
+            Source::GateOpening(i) => inputs.gate_opening[*i].slope,
+            Source::InflowRate(i) => inputs.inflow_rate[*i].slope,
+            _ => 0.0,
+        };
+        let rows = self.table.with_sources();
+        rows.map(|(row, source)| (row.reference, slope(source)))
+            .filter(|(_, slope)| *slope != 0.0)
+            .collect()
+    }
+
     /// Reads variables into `values` (flat, as in [`Component::set`]). Pure: gauges are sampled once a step, not here.
     ///
     /// # Errors
@@ -144,6 +161,7 @@ impl Component {
             Some(Source::Time) => values.fill(time),
             Some(Source::Threads) => values.fill(self.threads as f64),
             Some(Source::SaturateInputs) => values.fill(f64::from(self.life.saturate_inputs)),
+            Some(Source::LogRequired) => values.fill(f64::from(self.host.log_required)),
             Some(Source::Adjustable(i)) => values.fill(self.life.parameters[*i]),
             Some(Source::GateOpening(i)) => values.fill(inputs.gate_opening[*i].value),
             Some(Source::InflowRate(i)) => values.fill(inputs.inflow_rate[*i].value),
@@ -217,11 +235,11 @@ impl Component {
         references: &[ValueReference],
         found: usize,
     ) -> Result<(), Error> {
-        let wanted: usize = self
-            .rows(call, references)?
-            .iter()
-            .map(|row| row.len())
-            .sum();
+        let rows = self.rows(call, references)?;
+        if let Some(row) = rows.iter().find(|row| row.kind == ValueKind::Text) {
+            return Err(bad(call, &row.name, "a text", "variables that are numbers"));
+        }
+        let wanted: usize = rows.iter().map(|row| row.len()).sum();
         if wanted != found {
             let allowed = format!(
                 "{wanted}, the number of values of the {} references",

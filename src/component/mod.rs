@@ -13,6 +13,7 @@ mod access;
 mod advance;
 mod engine;
 mod error;
+mod host;
 mod lifecycle;
 mod outputs;
 mod parameters;
@@ -27,8 +28,10 @@ mod variables;
 mod watch;
 
 pub use error::{Error, Severity};
+pub use host::HostSettings;
 pub use points::next_point;
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport};
+pub use snapshot::saved_checksum;
 pub use status::Status;
 pub use variables::{
     Causality, Start, ValueKind, ValueReference, Variability, Variable, VariableTable,
@@ -71,6 +74,8 @@ pub struct Component {
     threads: usize,
     /// Inputs that were clamped since somebody asked: no part of the state.
     notes: Vec<String>,
+    /// For the host: no part of the state.
+    host: HostSettings,
     life: Life,
 }
 
@@ -116,6 +121,7 @@ impl Component {
             engine,
             threads,
             notes: Vec::new(),
+            host: HostSettings::of(scene),
             life,
         })
     }
@@ -313,6 +319,7 @@ impl Component {
         (self.engine, self.life) = Self::start(&self.base, &self.table, self.threads)?;
         self.scene = self.base.clone();
         self.built = self.life.parameters.clone();
+        self.host = HostSettings::of(&self.base);
         self.notes.clear();
         Ok(())
     }

@@ -39,7 +39,7 @@ pub enum Variability {
     Continuous,
 }
 
-/// What values mean; all travel as f64 through [`super::Component::get`].
+/// What values mean; all but texts travel as f64 through [`super::Component::get`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueKind {
     /// A real number with a unit.
@@ -48,6 +48,8 @@ pub enum ValueKind {
     Integer,
     /// 0 or 1.
     Boolean,
+    /// Text: not among the numbers, see [`super::Component::set_texts`].
+    Text,
 }
 
 /// Where the value at the start comes from.
@@ -55,6 +57,8 @@ pub enum ValueKind {
 pub enum Start {
     /// This value, settable before initialisation.
     Exact(Vec<f64>),
+    /// The empty text, settable before initialisation.
+    Empty,
     /// Computed during initialisation.
     Calculated,
 }

@@ -63,7 +63,7 @@ const CAPABILITIES: &[Capability] = &[
         "as many instances as memory holds, from several threads",
         &["instances_beside_each_other_give_the_bits_of_a_lone_run", "instances_do_not_know_each_other", "test_going_back_reset_and_a_second_instance"]),
     claim(("needsExecutionTool", "needsExecutionTool"), "false",
-        "no file is read at run time: the scene is inside the library", &["test_the_library_leaves_the_process_as_it_was"]),
+        "no file is read at run time: the scene is inside the library; none is written but the log that `log.path` asks for", &["test_the_library_leaves_the_process_as_it_was"]),
     claim(("canNotUseMemoryManagementFunctions", ""), "true",
         "the importer's allocator is never called", &["test_going_back_reset_and_a_second_instance"]),
     claim(("canRunAsynchronuously", ""), "false",
@@ -93,6 +93,12 @@ const RULES: &[(&str, &[&str])] = &[
     ("any form of resource location will do, NULL too: nothing is read from it", &["test_any_resource_location_will_do"]),
     ("directory, locale, environment, signals and floating-point mode stay as they were; no thread outlives an instance; a thousand instances leave no thread and no file open",
         &["test_the_library_leaves_the_process_as_it_was", "test_a_thousand_instances_leave_nothing_behind"]),
+    ("with `log.path` set all traffic is in an MCAP log, roll-backs, slopes and intermediate updates included, and `sandgate log redrive --check` gives the same bits; logging changes none",
+        &["test_simulate_fmu_leaves_a_log_that_runs_again", "test_roll_backs_are_in_the_log_and_run_again", "test_slopes_of_inputs_run_again", "test_what_is_done_inside_steps_runs_again", "test_logging_changes_no_bit"]),
+    ("a log that cannot begin is refused when initialisation ends; one that breaks off is told once, or is an Error of the step if `log.required` is true; a thousand instances with a log leave no file and no thread open",
+        &["test_a_log_that_cannot_begin_is_refused_and_the_path_can_be_corrected", "test_a_full_disk_is_told_once_or_is_an_error", "test_a_thousand_instances_with_a_log_leave_nothing_open"]),
+    ("packed with `--zenoh` and with `zenoh.config` set, an FMU publishes and takes set-points while its importer steps it; the importer owns time and wins where both set an input; a hundred instances leave no socket, no file and no thread but Zenoh's three",
+        &["test_a_client_watches_an_fmu_that_fmpy_steps", "test_publishing_changes_no_bit", "test_set_points_hold_from_the_next_step_but_the_importer_wins", "test_instances_with_log_and_zenoh_leave_what_is_documented"]),
     ("a thousand states got and freed grow memory by less than one state", &["test_a_thousand_states_leave_no_memory_behind"]),
     ("a panic answers Error; that instance waits for reset or a state, others go on", &["a_panic_ends_at_the_wall_and_reset_or_a_state_puts_things_right"]),
     ("results do not depend on threads, on logging, on who watches", &["threads_do_not_change_a_bit", "updates_come_after_internal_steps_and_watching_changes_no_bit", "every_way_to_run_a_channel_gives_the_same_bits_and_states_are_safe"]),
@@ -154,7 +160,7 @@ pub fn fmi_markdown() -> String {
         let _ = writeln!(text, "| {rule} | {} |", tests(proof));
     }
     text.push_str(
-        "\n`test_*` are in tests/python/test_fmu.py; the others in tests/it, tests/contract (run for the component, FMI 2, FMI 3 \
+        "\n`test_*` are in tests/python/test_fmu.py, test_fmu_log.py and test_fmu_zenoh.py; the others in tests/it, tests/contract (run for the component, FMI 2, FMI 3 \
          and C) and fmu/src.\n",
     );
     text

@@ -188,7 +188,7 @@ pub(super) fn variable_head(row: &Variable) -> Attributes {
     // The standard forbids `initial` for inputs and for time.
     if matches!(row.causality, Causality::Parameter | Causality::Output) {
         let initial = match row.start {
-            Start::Exact(_) => "exact",
+            Start::Exact(_) | Start::Empty => "exact",
             Start::Calculated => "calculated",
         };
         attributes.push(("initial", initial.to_owned()));
@@ -238,6 +238,8 @@ fn start_value(kind: ValueKind, value: f64) -> String {
         ValueKind::Real => number(value),
         ValueKind::Integer => format!("{value:.0}"),
         ValueKind::Boolean => (value != 0.0).to_string(),
+        // Texts have a start of their own.
+        ValueKind::Text => String::new(),
     }
 }
 

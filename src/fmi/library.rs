@@ -10,6 +10,39 @@ pub const FILE_NAME: &str = "libsandgate_fmu.so";
 /// What builds it.
 pub const BUILD_COMMAND: &str = "cargo build --release -p sandgate-fmu";
 
+/// Which of the shared libraries.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// Without Zenoh.
+    #[default]
+    Plain,
+    /// With Zenoh: an archive is several times as large.
+    Zenoh,
+}
+
+impl Kind {
+    /// The package that makes it.
+    fn package(self) -> &'static str {
+        match self {
+            Self::Plain => "sandgate-fmu",
+            Self::Zenoh => "sandgate-fmu-zenoh",
+        }
+    }
+
+    /// Its file.
+    fn file_name(self) -> &'static str {
+        match self {
+            Self::Plain => FILE_NAME,
+            Self::Zenoh => "libsandgate_fmu_zenoh.so",
+        }
+    }
+
+    /// What builds it.
+    fn build_command(self) -> String {
+        format!("cargo build --release -p {}", self.package())
+    }
+}
+
 /// The shared library: `explicit` if given; in a source tree what a build there gives; else the file beside the program.
 ///
 /// The build comes before the file beside the program, so that a library of yesterday's sources is never packed.
@@ -17,12 +50,21 @@ pub const BUILD_COMMAND: &str = "cargo build --release -p sandgate-fmu";
 /// # Errors
 /// [`Error::Library`] names what was looked for and the command that builds it.
 pub fn locate(explicit: Option<&Path>) -> Result<PathBuf, Error> {
+    locate_kind(explicit, Kind::Plain)
+}
+
+/// As [`locate`], of a kind.
+///
+/// # Errors
+/// As [`locate`].
+pub fn locate_kind(explicit: Option<&Path>, kind: Kind) -> Result<PathBuf, Error> {
+    let (file_name, command) = (kind.file_name(), kind.build_command());
     if let Some(path) = explicit {
         return if path.is_file() {
             Ok(path.to_path_buf())
         } else {
             Err(Error::Library(format!(
-                "{} is not a file; give the {FILE_NAME} that `{BUILD_COMMAND}` makes, or leave it out",
+                "{} is not a file; give the {file_name} that `{command}` makes, or leave it out",
                 path.display()
             )))
         };
@@ -30,14 +72,14 @@ pub fn locate(explicit: Option<&Path>) -> Result<PathBuf, Error> {
     let program = std::env::current_exe()
         .map_err(|e| Error::Library(format!("cannot tell where this program is: {e}")))?;
     if let Some((root, target)) = source_tree(&program) {
-        return build(&root, &target);
+        return build_kind(&root, &target, kind);
     }
-    let beside = program.with_file_name(FILE_NAME);
+    let beside = program.with_file_name(file_name);
     if beside.is_file() {
         return Ok(beside);
     }
     Err(Error::Library(format!(
-        "no {FILE_NAME} beside {}; build it with `{BUILD_COMMAND}` in Sandgate's source tree and give its path",
+        "no {file_name} beside {}; build it with `{command}` in Sandgate's source tree and give its path",
         program.display()
     )))
 }
@@ -47,23 +89,32 @@ pub fn locate(explicit: Option<&Path>) -> Result<PathBuf, Error> {
 /// # Errors
 /// [`Error::Library`] with what cargo printed.
 pub fn build(root: &Path, target: &Path) -> Result<PathBuf, Error> {
+    build_kind(root, target, Kind::Plain)
+}
+
+/// As [`build`], of a kind.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_kind(root: &Path, target: &Path, kind: Kind) -> Result<PathBuf, Error> {
+    let command = kind.build_command();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let output = Command::new(cargo)
-        .args(["build", "--release", "-p", "sandgate-fmu", "--target-dir"])
+        .args(["build", "--release", "-p", kind.package(), "--target-dir"])
         .arg(target)
         .current_dir(root)
         .output()
         .map_err(|e| {
             Error::Library(format!(
-                "cannot start cargo ({e}); run `{BUILD_COMMAND}` yourself and give the library's path"
+                "cannot start cargo ({e}); run `{command}` yourself and give the library's path"
             ))
         })?;
-    let library = target.join("release").join(FILE_NAME);
+    let library = target.join("release").join(kind.file_name());
     if output.status.success() && library.is_file() {
         return Ok(library);
     }
     Err(Error::Library(format!(
-        "`{BUILD_COMMAND}` in {} failed ({}):\n{}",
+        "`{command}` in {} failed ({}):\n{}",
         root.display(),
         output.status,
         String::from_utf8_lossy(&output.stderr)

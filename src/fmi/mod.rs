@@ -56,7 +56,7 @@ pub const LOG_CATEGORIES: [(&str, &str); 3] = [
     ),
     (
         "logStatusWarning",
-        "Inputs that were clamped to their range because saturate_inputs is true.",
+        "Inputs that were clamped to their range because saturate_inputs is true; a log that broke off.",
     ),
     (
         "logEvents",

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
+use super::library::Kind;
 use super::reference::{self, Extent, manifest};
 use super::slot::{self, SlotError};
 use super::{Error, FmiVersion, Platform, description, identifier, page::page, terminals};
@@ -15,8 +16,9 @@ use crate::scene::Scene;
 
 const LICENSE_APACHE: &str = include_str!("../../LICENSE-APACHE");
 const LICENSE_MIT: &str = include_str!("../../LICENSE-MIT");
-/// Of the crates inside the shared library; tests/it/licenses.rs writes it.
+/// Of the crates inside the shared library, and of those inside the one with Zenoh; tests/it/licenses.rs writes them.
 const THIRD_PARTY: &str = include_str!("licenses/third_party.txt");
+const THIRD_PARTY_ZENOH: &str = include_str!("licenses/third_party_zenoh.txt");
 
 /// What goes into an FMU beside the scene.
 #[derive(Clone, Debug)]
@@ -27,6 +29,8 @@ pub struct Packing {
     pub libraries: Vec<PathBuf>,
     /// How far the reference results go.
     pub reference: Extent,
+    /// Which libraries these are: their licences differ.
+    pub kind: Kind,
 }
 
 /// Writes an FMU of `scene` to `out`, with the scene inside a copy of the shared library at `library` and short
@@ -39,6 +43,7 @@ pub fn pack(scene: &Scene, version: FmiVersion, library: &Path, out: &Path) -> R
         version,
         libraries: vec![library.to_path_buf()],
         reference: Extent::Short,
+        kind: Kind::Plain,
     };
     pack_with(scene, &packing, out)
 }
@@ -78,7 +83,10 @@ pub fn pack_with(scene: &Scene, packing: &Packing, out: &Path) -> Result<(), Err
     );
     add(
         &format!("{licenses_at}/third_party.txt"),
-        THIRD_PARTY.as_bytes(),
+        match packing.kind {
+            Kind::Plain => THIRD_PARTY.as_bytes(),
+            Kind::Zenoh => THIRD_PARTY_ZENOH.as_bytes(),
+        },
     );
     let extra = reference::FOLDER;
     add(

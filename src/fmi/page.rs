@@ -26,7 +26,8 @@ is allowed; the instance goes on as before. After a failed step only reading, se
 allowed.</li>
 <li>Discharges, forces and masses of planar scenes are for the scene's out-of-plane width, those of axisymmetric scenes for whole rings. Look at the validity beside
 each gauge before you use its reading: 0 valid, 1 empty, 2 outside, 3 blocked.</li>
-<li>The scene is inside the library: no file is read at run time. <code>resources/scene.toml</code> is a copy to look
+<li>The scene is inside the library: no file is read at run time, and none is written but the log that
+<code>log.path</code> asks for. <code>resources/scene.toml</code> is a copy to look
 at; changing it changes nothing. Pack a new FMU with <code>sandgate fmu CASE --fmi 2|3 -o FILE</code>.</li>
 </ul>
 ";
@@ -36,13 +37,16 @@ const CONNECT: &str = "<h2>The same component over Zenoh, and MCAP logs</h2>
 <p>This FMU, the program <code>sandgate</code> and its Zenoh service run the same component: the same scene, inputs and
 steps give the same bits. Take <code>resources/scene.toml</code> out of this archive (an FMU is a zip file), then:</p>
 <ul>
-<li><b>Zenoh</b>: <code>sandgate serve scene.toml</code> prints the address it listens at. It publishes output
+<li><b>Zenoh</b>: an FMU packed with <code>sandgate fmu CASE --zenoh</code> publishes while it is stepped, and takes set-points, if
+its parameter <code>zenoh.config</code> is not empty (<code>{}</code> will do). By itself the component runs with
+<code>sandgate serve scene.toml</code>, which prints the address it listens at. It publishes output
 <code>KIND.NAME.WHAT</code> on <code>BASE/out/KIND/NAME.WHAT</code> after each step, takes inputs on
 <code>BASE/in/VARIABLE</code> and answers requests (step, save, restore, ...) on <code>BASE/@rpc/VERB</code>. A state that
 this FMU serialises can be restored there, and the other way round. Keys, messages and requests: docs/zenoh.md of
 Sandgate.</li>
-<li><b>MCAP</b>: <code>sandgate run scene.toml</code> writes <code>run.mcap</code> with gauges, inputs, device poses and
-particles, for Foxglove, Rerun or any MCAP reader. What is in it: docs/logs.md of Sandgate.</li>
+<li><b>MCAP</b>: set the parameter <code>log.path</code> to the name of a file before initialisation ends, and this FMU logs all
+traffic there: calls, inputs, gauges, device poses and particles, for Foxglove, Rerun or any MCAP reader, and for
+<code>sandgate log redrive --check</code>, which runs it again and compares every bit. What is in it: docs/logs.md of Sandgate.</li>
 </ul>
 ";
 
@@ -153,6 +157,7 @@ fn start(row: &Variable) -> String {
             let values: Vec<_> = values.iter().map(|v| number(*v)).collect();
             values.join(" ")
         }
+        Start::Empty => "\"\"".to_owned(),
         Start::Calculated => "calculated".to_owned(),
     }
 }

@@ -6,7 +6,7 @@ use super::description::{
 };
 use super::xml::{Attributes, Xml};
 use super::{FmiVersion, capabilities};
-use crate::component::{Causality, ValueKind, Variable, VariableTable};
+use crate::component::{Causality, Start, ValueKind, Variable, VariableTable};
 use crate::scene::Scene;
 
 /// As [`variable_head`], but time is a local variable: FMI Library up to 2.x (libcosim, FMU Compliance Checker) takes
@@ -53,8 +53,13 @@ pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: 
             ValueKind::Integer if enumeration(row).is_some() => "Enumeration",
             ValueKind::Integer => "Integer",
             ValueKind::Boolean => "Boolean",
+            ValueKind::Text => "String",
         };
-        xml.leaf(element, &variable_value(row));
+        let mut value = variable_value(row);
+        if row.start == Start::Empty {
+            value.push(("start", String::new()));
+        }
+        xml.leaf(element, &value);
         xml.end();
     }
     xml.end();

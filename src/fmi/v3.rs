@@ -6,7 +6,7 @@ use super::description::{
 };
 use super::xml::{Attributes, Xml};
 use super::{FmiVersion, capabilities};
-use crate::component::{Causality, ValueKind, Variability, Variable, VariableTable};
+use crate::component::{Causality, Start, ValueKind, Variability, Variable, VariableTable};
 use crate::scene::Scene;
 
 pub(super) fn write(xml: &mut Xml, scene: &Scene, table: &VariableTable, token: &str) {
@@ -65,6 +65,7 @@ fn write_variable(xml: &mut Xml, row: &Variable) {
         ValueKind::Integer if enumeration(row).is_some() => "Enumeration",
         ValueKind::Integer => "Int64",
         ValueKind::Boolean => "Boolean",
+        ValueKind::Text => "String",
     };
     let mut attributes = variable_head(row);
     // What may be read or set while a step is running.
@@ -73,6 +74,12 @@ fn write_variable(xml: &mut Xml, row: &Variable) {
         attributes.push(("intermediateUpdate", "true".to_owned()));
     }
     attributes.extend(variable_value(row));
+    if row.start == Start::Empty {
+        xml.begin(element, &attributes);
+        xml.leaf("Start", &vec![("value", String::new())]);
+        xml.end();
+        return;
+    }
     if row.shape.is_empty() {
         xml.leaf(element, &attributes);
         return;

@@ -3,9 +3,9 @@
 
 use super::Recorder;
 use crate::component::{Component, StepReport, ValueReference};
-use crate::wire::Observer;
 use crate::wire::foxglove::LogLevel;
 use crate::wire::messages::{AppliedEvent, Command};
+use crate::wire::{Moment, Observer};
 
 impl Observer for Recorder {
     fn on_initialize(
@@ -41,6 +41,28 @@ impl Observer for Recorder {
         self.keep(written);
     }
 
+    fn on_slopes(&mut self, c: &Component, inputs: &[ValueReference], slopes: &[f64], who: &str) {
+        self.record_slopes(c, inputs, slopes, who);
+    }
+
+    fn on_moment(&mut self, component: &Component, moment: &Moment, source: &str) {
+        self.record_moment(component, moment, source);
+    }
+
+    fn on_failed_step(&mut self) {
+        self.record_failed_step();
+    }
+
+    fn on_save(&mut self, component: &Component, state: &[u8; 32], source: &str) {
+        let written = self.record_save(component, state, source);
+        self.keep(written);
+    }
+
+    fn on_restore(&mut self, component: &Component, state: &[u8; 32], source: &str) {
+        let written = self.record_restore(component, state, source);
+        self.keep(written);
+    }
+
     fn on_command(&mut self, command: &Command) {
         let written = self.record_command(command);
         self.keep(written);
@@ -59,5 +81,9 @@ impl Observer for Recorder {
     fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str) {
         let written = self.log(time, level, name, message);
         self.keep(written);
+    }
+
+    fn trouble(&self) -> Option<String> {
+        self.failure().map(|failure| failure.to_string())
     }
 }

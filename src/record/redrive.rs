@@ -11,11 +11,11 @@ use super::options::RecordOptions;
 use super::raw::{Ending, RawEntry, RawMessage, RawReader};
 use super::read::{Body, decode};
 use super::{RecordError, Recorder};
-use crate::component::{self, Component, Mode, StepReport};
+use crate::component::{self, Component, Mode, StepReport, Wish, saved_checksum};
 use crate::scene;
 use crate::wire::convert::{self, Output};
-use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Gauge};
-use crate::wire::picture;
+use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, AppliedMoment, Gauge};
+use crate::wire::{Moment, picture};
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
@@ -37,6 +37,8 @@ pub struct Redriven {
     pub steps: u64,
     /// Inputs set.
     pub inputs: u64,
+    /// How often it went back to a state that had been saved.
+    pub restored: u64,
     /// Messages compared.
     pub compared: u64,
     /// The first difference, at which the run stopped.
@@ -120,7 +122,10 @@ pub fn redrive(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Redriven, RedriveError> {
     let mut source = RawReader::open(path)?;
-    let mut start = Start::default();
+    let mut start = Start {
+        restored: restored(path)?,
+        ..Start::default()
+    };
     let mut run: Option<Run> = None;
     for entry in source.by_ref() {
         match entry? {
@@ -148,6 +153,22 @@ pub fn redrive(
     run.finish(start.end.as_ref())
 }
 
+/// How often the log goes back to each saved state, by checksum: only these need to be kept.
+fn restored(path: &Path) -> Result<HashMap<Vec<u8>, u64>, ReadError> {
+    let mut restored = HashMap::new();
+    for entry in RawReader::open(path)? {
+        if let RawEntry::Message(message) = entry?
+            && message.channel.schema.name == "sandgate.Applied"
+            && let Body::Applied(applied) = decode(path, &message)?
+            && applied.event() == AppliedEvent::Restore
+            && !applied.state.is_empty()
+        {
+            *restored.entry(applied.state).or_default() += 1;
+        }
+    }
+    Ok(restored)
+}
+
 /// What stands before the messages of a log, and its end.
 #[derive(Default)]
 struct Start {
@@ -155,6 +176,7 @@ struct Start {
     end: Option<BTreeMap<String, String>>,
     scene: Option<String>,
     state: Option<Vec<u8>>,
+    restored: HashMap<Vec<u8>, u64>,
 }
 
 impl Start {
@@ -207,10 +229,13 @@ impl Start {
                 .collect(),
             component,
             recorder,
+            restored: self.restored.clone(),
+            saved: HashMap::new(),
             report: None,
             done: Redriven {
                 steps: 0,
                 inputs: 0,
+                restored: 0,
                 compared: 0,
                 difference: None,
                 same_state: None,
@@ -226,6 +251,10 @@ struct Run {
     component: Component,
     outputs: HashMap<String, Output>,
     recorder: Option<Recorder>,
+    /// How often the log goes back to each state from here on, by checksum.
+    restored: HashMap<Vec<u8>, u64>,
+    /// States that it will go back to.
+    saved: HashMap<Vec<u8>, Vec<u8>>,
     report: Option<StepReport>,
     done: Redriven,
 }
@@ -301,7 +330,7 @@ impl Run {
                 disagree(&[t, h], &[applied.t, applied.h]),
             )));
         }
-        let refused = |call: &str, error: component::Error| {
+        let refused = |call: &str, error: String| {
             let what = format!("{call} was done then and is refused now: {error}");
             Some(("time".to_owned(), what))
         };
@@ -309,14 +338,14 @@ impl Run {
             AppliedEvent::Initialize => {
                 let stop = h.is_finite().then_some(h);
                 if let Err(error) = self.component.initialize(t, stop) {
-                    return Ok(refused("initialize", error));
+                    return Ok(refused("initialize", error.to_string()));
                 }
                 if let Some(recorder) = &mut self.recorder {
                     recorder.record_initialization(&self.component, t, stop, &applied.source)?;
                 }
             }
             AppliedEvent::Step => {
-                let report = match self.component.do_step(t, h) {
+                let report = match self.step(t, h, &applied.moments, &applied.source) {
                     Ok(report) => report,
                     Err(error) => return Ok(refused("this step", error)),
                 };
@@ -327,8 +356,109 @@ impl Run {
                 }
             }
             AppliedEvent::Reset => self.component.reset()?,
+            AppliedEvent::Save => return self.save(applied),
+            AppliedEvent::Restore if !applied.state.is_empty() => return self.restore(applied),
             // The state it was restored to is the one that the file starts from.
             AppliedEvent::Restore | AppliedEvent::Set => {}
+        }
+        Ok(None)
+    }
+
+    /// The step, with what was done inside it then.
+    fn step(
+        &mut self,
+        t: f64,
+        h: f64,
+        moments: &[AppliedMoment],
+        source: &str,
+    ) -> Result<StepReport, String> {
+        if moments.is_empty() {
+            let done = self.component.do_step(t, h);
+            return done.map_err(|error| error.to_string());
+        }
+        let mut left = moments.iter().peekable();
+        let mut done = Vec::new();
+        let mut refused = None;
+        let report = self.component.do_step_watched(t, h, &mut |moment| {
+            let now = moment.time().to_bits();
+            let Some(applied) = left.next_if(|first| first.t_bits == now) else {
+                return Wish::GoOn;
+            };
+            let mut inputs = Vec::new();
+            for input in &applied.inputs {
+                let values: Vec<f64> = input.bits.iter().map(|&b| f64::from_bits(b)).collect();
+                if let Err(error) = moment.set(&[input.reference], &values) {
+                    refused.get_or_insert(error);
+                }
+                inputs.push((vec![input.reference], values));
+            }
+            let wish = match applied.ends {
+                true => Wish::EndAt(f64::from_bits(applied.end_bits)),
+                false => Wish::GoOn,
+            };
+            done.push(Moment {
+                time: moment.time(),
+                inputs,
+                wish,
+            });
+            wish
+        });
+        let report = report.map_err(|error| error.to_string())?;
+        if let Some(error) = refused {
+            return Err(error.to_string());
+        }
+        if let Some(applied) = left.next() {
+            let time = f64::from_bits(applied.t_bits);
+            return Err(format!("no internal step ends at t = {time:?} s"));
+        }
+        if let Some(recorder) = &mut self.recorder {
+            for moment in &done {
+                recorder.record_moment(&self.component, moment, source);
+            }
+        }
+        Ok(report)
+    }
+
+    /// A state was saved then: the same one now?
+    fn save(&mut self, applied: &Applied) -> Result<Option<(String, String)>, RedriveError> {
+        let bytes = self.component.save()?;
+        let own = saved_checksum(&bytes).unwrap_or_default();
+        if applied.state != own {
+            let what = format!(
+                "the log says checksum {}, computed {}",
+                hex(&applied.state),
+                hex(&own)
+            );
+            return Ok(Some(("saved state".to_owned(), what)));
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.record_save(&self.component, &own, &applied.source)?;
+        }
+        if self.restored.contains_key(&applied.state) {
+            self.saved.insert(applied.state.clone(), bytes);
+        }
+        Ok(None)
+    }
+
+    /// The component was brought back to a state then.
+    fn restore(&mut self, applied: &Applied) -> Result<Option<(String, String)>, RedriveError> {
+        let Some(bytes) = self.saved.get(&applied.state) else {
+            let what = format!("no state {} was saved before", hex(&applied.state));
+            return Ok(Some(("restored state".to_owned(), what)));
+        };
+        self.component.restore(bytes)?;
+        if let Some(left) = self.restored.get_mut(&applied.state) {
+            *left = left.saturating_sub(1);
+            if *left == 0 {
+                self.restored.remove(&applied.state);
+                self.saved.remove(&applied.state);
+            }
+        }
+        self.done.restored += 1;
+        self.report = None;
+        let state = <[u8; 32]>::try_from(applied.state.as_slice()).unwrap_or_default();
+        if let Some(recorder) = &mut self.recorder {
+            recorder.record_restore(&self.component, &state, &applied.source)?;
         }
         Ok(None)
     }
@@ -347,7 +477,12 @@ impl Run {
         let Some(reference) = known.map(|row| row.reference) else {
             return Some((input.name.clone(), "no such variable now".to_owned()));
         };
-        if let Err(error) = self.component.set(&[reference], &values) {
+        let done = if input.slope {
+            self.component.set_input_derivatives(&[reference], &values)
+        } else {
+            self.component.set(&[reference], &values)
+        };
+        if let Err(error) = done {
             let what = format!("was set then and is refused now: {error}");
             return Some((input.name.clone(), what));
         }
@@ -357,7 +492,11 @@ impl Run {
             } else {
                 &input.source
             };
-            recorder.record_inputs(&self.component, &[reference], &values, by);
+            if input.slope {
+                recorder.record_slopes(&self.component, &[reference], &values, by);
+            } else {
+                recorder.record_inputs(&self.component, &[reference], &values, by);
+            }
         }
         None
     }
@@ -397,4 +536,8 @@ impl Run {
         }
         Ok(self.done)
     }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,11 +1,12 @@
-//! The scalars of a log side by side: one row a communication point, the columns of the run's `gauges.csv`.
+//! The scalars of a log side by side: one row a communication point, the columns of the run's `gauges.csv`. Rows of
+//! steps that were taken back are left out.
 
 use super::error::ReadError;
 use super::raw::{Ending, RawEntry, RawReader};
 use super::read::{Body, decode};
 use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
 use crate::scene;
-use crate::wire::messages::{Applied, Gauge};
+use crate::wire::messages::{Applied, AppliedEvent, Gauge};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -115,6 +116,8 @@ struct Builder {
     places: HashMap<String, Vec<usize>>,
     /// The row being filled.
     row: Vec<f64>,
+    /// As it was when states were saved, by their checksums.
+    saved: HashMap<Vec<u8>, Vec<f64>>,
     span: (f64, f64),
 }
 
@@ -139,7 +142,7 @@ impl Builder {
             }
             row.push(match &variable.start {
                 Start::Exact(values) => values.first().copied(),
-                Start::Calculated => None,
+                Start::Empty | Start::Calculated => None,
             });
             columns.push(Column {
                 name: variable.name.clone(),
@@ -158,6 +161,7 @@ impl Builder {
                 ..Table::default()
             },
             places,
+            saved: HashMap::new(),
             row: row.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect(),
             span,
         }
@@ -203,8 +207,28 @@ impl Builder {
     }
 
     fn inputs(&mut self, applied: &Applied) {
-        for input in &applied.inputs {
+        let moments = applied.moments.iter().flat_map(|moment| &moment.inputs);
+        for input in applied.inputs.iter().chain(moments).filter(|i| !i.slope) {
             self.put(&input.name, &input.values);
+        }
+        if applied.event() == AppliedEvent::Save {
+            self.saved.insert(applied.state.clone(), self.row.clone());
+        }
+        if applied.event() == AppliedEvent::Restore
+            && let Some(row) = self.saved.get(&applied.state)
+        {
+            self.row.clone_from(row);
+            self.take_back(applied.step);
+        }
+    }
+
+    /// Leaves out the rows from this communication step on; its own comes again.
+    fn take_back(&mut self, step: u64) {
+        let kept = self.table.step.partition_point(|own| *own < step);
+        self.table.step.truncate(kept);
+        self.table.time.truncate(kept);
+        for column in &mut self.table.columns {
+            column.values.truncate(kept);
         }
     }
 

@@ -12,11 +12,11 @@ use super::preamble::{has_state, owned, write_preamble};
 use super::sink::Sink;
 use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::convert::{self, nanoseconds, timestamp};
-use crate::wire::foxglove::{Log, LogLevel};
-use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, Command};
-use crate::wire::{keys, picture};
+use crate::wire::foxglove::{Log, LogLevel, SceneUpdate};
+use crate::wire::messages::{AppliedEvent, Command};
+use crate::wire::{Moment, Pending, keys, picture};
 use prost::Message;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -26,7 +26,11 @@ pub struct Recorder {
     channels: Channels,
     options: RecordOptions,
     pub(super) place: Option<Place>,
-    pending: Vec<AppliedInput>,
+    pending: Pending,
+    /// Checksums of the states that were saved since this file began.
+    saved: HashSet<[u8; 32]>,
+    /// How often the component was brought back to one of them.
+    restored: u64,
     /// Time from which snapshots are counted [s].
     first_time: f64,
     /// Time at which this file begins [s].
@@ -76,6 +80,27 @@ impl Recorder {
         Self::start(sink, Some(place), component, options, None)
     }
 
+    /// As [`Recorder::create`], as the file that follows after `jumps` resets of a component whose files before it have
+    /// ended: `run-1-0000.mcap`.
+    ///
+    /// # Errors
+    /// As [`Recorder::create`].
+    pub fn create_after(
+        path: &Path,
+        jumps: u32,
+        component: &Component,
+        options: RecordOptions,
+    ) -> Result<Self, RecordError> {
+        let place = Place {
+            rotates: options.rotates(),
+            epoch: jumps,
+            ..Place::alone(path)
+        };
+        keys::base(keys::ROOT, &options.instance)?;
+        let sink = Box::new(place.create()?);
+        Self::start(sink, Some(place), component, options, None)
+    }
+
     pub(super) fn start(
         sink: Box<dyn Sink>,
         place: Option<Place>,
@@ -101,7 +126,9 @@ impl Recorder {
             channels,
             options,
             place,
-            pending: Vec::new(),
+            pending: Pending::default(),
+            saved: HashSet::new(),
+            restored: 0,
             first_time: component.time(),
             began: component.time(),
             snapshots: 0,
@@ -110,8 +137,17 @@ impl Recorder {
             last: Last::default(),
         };
         recorder.remember(component);
-        recorder.scene(component);
-        if has_state(component) {
+        // Before initialisation parameters may still move walls: who runs the log again has the scene's own then.
+        let started = has_state(component);
+        let scene = match started {
+            true => component.scene(),
+            false => component.base_scene(),
+        };
+        recorder.scene(
+            &picture::scene_update(scene, component.time()),
+            component.time(),
+        );
+        if started {
             recorder.applied(
                 component,
                 AppliedEvent::Restore,
@@ -138,9 +174,15 @@ impl Recorder {
         source: &str,
     ) -> Result<(), RecordError> {
         self.first_time = start;
+        self.began = start;
         self.snapshots = 0;
         let times = (start, stop.unwrap_or(f64::NAN));
         self.applied(component, AppliedEvent::Initialize, times, source);
+        let drawn = |scene| picture::scene_update(scene, start);
+        let now = drawn(component.scene());
+        if now != drawn(component.base_scene()) {
+            self.scene(&now, start);
+        }
         self.outputs(component, None)?;
         self.end_of_step()
     }
@@ -154,21 +196,71 @@ impl Recorder {
         values: &[f64],
         source: &str,
     ) {
-        let mut rest = values;
-        for &reference in references {
-            let Some(variable) = component.variables().by_reference(reference) else {
-                continue; // The component accepted the call, so this does not happen.
-            };
-            let (own, others) = rest.split_at(variable.len().min(rest.len()));
-            rest = others;
-            self.pending.push(AppliedInput {
-                reference,
-                name: variable.name.clone(),
-                bits: own.iter().map(|v| v.to_bits()).collect(),
-                values: own.to_vec(),
-                source: source.to_owned(),
-            });
+        self.pending.set(component, references, values, source);
+    }
+
+    /// Inputs were given slopes by `source` and accepted, one each, as in [`Component::set_input_derivatives`].
+    pub fn record_slopes(
+        &mut self,
+        component: &Component,
+        references: &[ValueReference],
+        slopes: &[f64],
+        source: &str,
+    ) {
+        self.pending.slopes(component, references, slopes, source);
+    }
+
+    /// Something was done inside the step that is running.
+    pub fn record_moment(&mut self, component: &Component, moment: &Moment, source: &str) {
+        self.pending.moment(component, moment, source);
+    }
+
+    /// The step that was running did not come to its end: what was done inside it is forgotten, inputs set before it
+    /// still count.
+    pub fn record_failed_step(&mut self) {
+        self.pending.forget_moments();
+    }
+
+    /// The state was saved by `source`, and the component may be brought back to it. `state` is its checksum
+    /// ([`saved_checksum`](crate::component::saved_checksum)); the state itself is not written: who runs the log again
+    /// comes by it.
+    ///
+    /// # Errors
+    /// [`RecordError::Required`].
+    pub fn record_save(
+        &mut self,
+        component: &Component,
+        state: &[u8; 32],
+        source: &str,
+    ) -> Result<(), RecordError> {
+        self.saved.insert(*state);
+        let times = (component.time(), f64::NAN);
+        self.stated(component, AppliedEvent::Save, times, state, source);
+        self.check()
+    }
+
+    /// The component was brought back to the state with this checksum. If it was saved since this file began, the file
+    /// goes on; otherwise it is a [`Recorder::record_jump`].
+    ///
+    /// # Errors
+    /// As [`Recorder::record_jump`].
+    pub fn record_restore(
+        &mut self,
+        component: &Component,
+        state: &[u8; 32],
+        source: &str,
+    ) -> Result<(), RecordError> {
+        if !self.saved.contains(state) || !has_state(component) {
+            return self.record_jump(component, AppliedEvent::Restore, source);
         }
+        if !self.pending.is_empty() {
+            self.leave_pending();
+        }
+        self.restored += 1;
+        let times = (component.time(), f64::NAN);
+        self.stated(component, AppliedEvent::Restore, times, state, source);
+        self.outputs(component, None)?;
+        self.end_of_step()
     }
 
     /// A step was done from `t` over `h` [s] by `source`: writes the inputs it used, all outputs, the figures of the
@@ -352,7 +444,7 @@ impl Recorder {
         let reason = match event {
             AppliedEvent::Reset => "reset",
             AppliedEvent::Restore => "restored",
-            AppliedEvent::Step | AppliedEvent::Initialize | AppliedEvent::Set => "start",
+            _ => "start",
         };
         match self.follow(place.jumped(), component, reason) {
             Ok(following) => self.go_on(following, |before| before.close(BTreeMap::new(), reason)),
@@ -401,6 +493,44 @@ impl Recorder {
         trouble.map_or(Ok(finished), Err)
     }
 
+    /// Ends the file of a component that has been reset, or gone to a state that is not initialised: it does not tell
+    /// where the component went.
+    ///
+    /// # Errors
+    /// As [`Recorder::finish`].
+    pub fn end(mut self, reason: &str) -> Result<Finished, RecordError> {
+        let trouble = self.trouble.take();
+        let finished = self.close(BTreeMap::new(), reason)?;
+        trouble.map_or(Ok(finished), Err)
+    }
+
+    /// Removes the file: nothing happened that it could tell.
+    ///
+    /// # Errors
+    /// [`RecordError::Create`] with what the system said.
+    pub fn discard(mut self) -> Result<(), RecordError> {
+        self.file.give_up("discarded");
+        match &self.place {
+            Some(place) => {
+                let path = place.part();
+                std::fs::remove_file(&path).map_err(|source| RecordError::Create { path, source })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// How many files of other epochs come before the one that follows after a reset; for [`Recorder::create_after`].
+    #[must_use]
+    pub fn next_epoch(&self) -> u32 {
+        self.place.as_ref().map_or(0, |place| place.epoch + 1)
+    }
+
+    /// Whether the scene, or whoever made this log, requires it.
+    #[must_use]
+    pub fn is_required(&self) -> bool {
+        self.options.required
+    }
+
     fn close(
         mut self,
         state: BTreeMap<String, String>,
@@ -408,12 +538,7 @@ impl Recorder {
     ) -> Result<Finished, RecordError> {
         let last = self.last;
         if !self.pending.is_empty() {
-            self.write_applied(
-                AppliedEvent::Set,
-                last.communication_steps,
-                (last.time, 0.0),
-                "",
-            );
+            self.leave_pending();
         }
         let mut end = owned([
             ("reason", reason.to_owned()),
@@ -422,6 +547,7 @@ impl Recorder {
             ("communication_steps", last.communication_steps.to_string()),
             ("steps", last.steps.to_string()),
             ("dropped", self.file.counts().dropped.to_string()),
+            ("restored", self.restored.to_string()),
         ]);
         end.extend(state);
         self.file.metadata("end", end);
@@ -452,9 +578,8 @@ impl Recorder {
         };
     }
 
-    fn scene(&mut self, component: &Component) {
-        let time = component.time();
-        let update = picture::scene_update(component.scene(), time).encode_to_vec();
+    fn scene(&mut self, update: &SceneUpdate, time: f64) {
+        let update = update.encode_to_vec();
         let channel = &mut self.channels.scene;
         write(
             &mut self.file,
@@ -476,30 +601,43 @@ impl Recorder {
             AppliedEvent::Initialize => 0,
             _ => component.statistics().communication_steps,
         };
-        self.write_applied(event, step, (t, h), source);
+        self.write_applied(event, step, (t, h), &[], source);
     }
 
-    fn write_applied(&mut self, event: AppliedEvent, step: u64, (t, h): (f64, f64), source: &str) {
-        let applied = Applied {
-            timestamp: Some(timestamp(t)),
-            event: event as i32,
-            step,
-            t_bits: t.to_bits(),
-            h_bits: h.to_bits(),
-            t,
-            h,
-            inputs: std::mem::take(&mut self.pending),
-            source: source.to_owned(),
-        };
+    /// As `applied`, of a call about a saved state.
+    fn stated(
+        &mut self,
+        component: &Component,
+        event: AppliedEvent,
+        times: (f64, f64),
+        state: &[u8],
+        source: &str,
+    ) {
+        let step = component.statistics().communication_steps;
+        self.write_applied(event, step, times, state, source);
+    }
+
+    /// Inputs that were set after the last step, and that no step will use.
+    fn leave_pending(&mut self) {
+        let last = self.last;
+        let times = (last.time, 0.0);
+        self.write_applied(AppliedEvent::Set, last.communication_steps, times, &[], "");
+    }
+
+    fn write_applied(
+        &mut self,
+        event: AppliedEvent,
+        step: u64,
+        (t, h): (f64, f64),
+        state: &[u8],
+        source: &str,
+    ) {
+        let mut applied = self.pending.applied(event, step, (t, h), source);
+        applied.state = state.to_vec();
         let data = applied.encode_to_vec();
         let channel = &mut self.channels.applied;
-        write(
-            &mut self.file,
-            self.options.deterministic,
-            channel,
-            t,
-            &data,
-        );
+        let deterministic = self.options.deterministic;
+        write(&mut self.file, deterministic, channel, t, &data);
     }
 
     /// Outputs, figures, frames of the gates and, when due, particles.

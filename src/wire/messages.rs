@@ -74,6 +74,12 @@ messages! {
         /// Who made the call: "run", "fmi3", "c", or the name of a Zenoh client.
         #[prost(string, tag = "9")]
         pub source: String,
+        /// What was done to inputs inside the step, in the order of time.
+        #[prost(message, repeated, tag = "10")]
+        pub moments: Vec<AppliedMoment>,
+        /// SAVE, and RESTORE of a state that was saved in the same file: which state, by its checksum (SHA-256).
+        #[prost(bytes = "vec", tag = "11")]
+        pub state: Vec<u8>,
     } with {
         /// Calls that drive a component.
         "sandgate.Applied.Event": pub enum AppliedEvent {
@@ -83,10 +89,13 @@ messages! {
             Initialize = 1,
             /// `reset()`: back to start values.
             Reset = 2,
-            /// `restore(...)`: back or forth to a saved state.
+            /// `restore(...)`: back or forth to a saved state: that of SAVE with the same checksum, or the one that the
+            /// file starts from.
             Restore = 3,
             /// Inputs that were set after the last step of the file: no step of it used them.
             Set = 4,
+            /// `save()`: a state that the component may be brought back to.
+            Save = 5,
         }
     }
 
@@ -107,6 +116,25 @@ messages! {
         /// Who set it.
         #[prost(string, tag = "5")]
         pub source: String,
+        /// Whether the values are slopes that the inputs have over the step, per second, and not their values.
+        #[prost(bool, tag = "6")]
+        pub slope: bool,
+    }
+
+    /// What was done inside a step, after one of its internal steps.
+    "sandgate.AppliedMoment": pub struct AppliedMoment {
+        /// Bits of the f64 time at which the internal step ended.
+        #[prost(fixed64, tag = "1")]
+        pub t_bits: u64,
+        /// Inputs set for the rest of the step.
+        #[prost(message, repeated, tag = "2")]
+        pub inputs: Vec<AppliedInput>,
+        /// Whether the step was to end early.
+        #[prost(bool, tag = "3")]
+        pub ends: bool,
+        /// Bits of the f64 time at which it was to end, if so; at once if that had passed.
+        #[prost(fixed64, tag = "4")]
+        pub end_bits: u64,
     }
 
     /// A call of the component from outside, or the reply to one: Zenoh RPC, FMI, C or the program.

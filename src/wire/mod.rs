@@ -11,7 +11,9 @@ pub mod foxglove;
 pub mod keys;
 pub mod messages;
 mod observer;
+mod pending;
 pub mod picture;
 
 pub use describe::{Described, DescribedEnum, Field, schema};
 pub use observer::{Both, Observer, Unobserved};
+pub use pending::{Moment, Pending};

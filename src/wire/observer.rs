@@ -1,6 +1,7 @@
 //! How one adapter hears what another does, without either knowing the other: `serve --log` plugs a recorder into the
 //! bus through [`Observer`].
 
+use super::Moment;
 use super::foxglove::LogLevel;
 use super::messages::{AppliedEvent, Command};
 use crate::component::{Component, StepReport, ValueReference};
@@ -20,6 +21,24 @@ pub trait Observer: Send {
         source: &str,
     );
 
+    /// Inputs were given slopes for the next step, one each, as in [`Component::set_input_derivatives`].
+    fn on_slopes(&mut self, _: &Component, _: &[ValueReference], _: &[f64], _: &str) {}
+
+    /// Inside the step that is running inputs were set, or it was told to end early.
+    fn on_moment(&mut self, _: &Component, _: &Moment, _: &str) {}
+
+    /// The step that was running did not come to its end.
+    fn on_failed_step(&mut self) {}
+
+    /// The state was saved, as this one would: `state` is its checksum.
+    fn on_save(&mut self, _: &Component, _: &[u8; 32], _: &str) {}
+
+    /// The component was brought back to a state with this checksum. Whoever does not know the state takes it for a
+    /// jump.
+    fn on_restore(&mut self, component: &Component, _: &[u8; 32], source: &str) {
+        self.on_jump(component, AppliedEvent::Restore, source);
+    }
+
     /// A step was done from `t` over `h` [s].
     fn on_step(&mut self, component: &Component, report: &StepReport, t: f64, h: f64, source: &str);
 
@@ -34,6 +53,11 @@ pub trait Observer: Send {
 
     /// A line for people.
     fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str);
+
+    /// Why it cannot keep what it hears any more, if so.
+    fn trouble(&self) -> Option<String> {
+        None
+    }
 }
 
 /// Two observers as one; the first one hears everything first.
@@ -54,6 +78,26 @@ impl Observer for Both<'_> {
         self.0.on_input(c, references, values, source);
         self.1.on_input(c, references, values, source);
     }
+    fn on_slopes(&mut self, c: &Component, inputs: &[ValueReference], slopes: &[f64], who: &str) {
+        self.0.on_slopes(c, inputs, slopes, who);
+        self.1.on_slopes(c, inputs, slopes, who);
+    }
+    fn on_moment(&mut self, c: &Component, moment: &Moment, source: &str) {
+        self.0.on_moment(c, moment, source);
+        self.1.on_moment(c, moment, source);
+    }
+    fn on_failed_step(&mut self) {
+        self.0.on_failed_step();
+        self.1.on_failed_step();
+    }
+    fn on_save(&mut self, c: &Component, state: &[u8; 32], source: &str) {
+        self.0.on_save(c, state, source);
+        self.1.on_save(c, state, source);
+    }
+    fn on_restore(&mut self, c: &Component, state: &[u8; 32], source: &str) {
+        self.0.on_restore(c, state, source);
+        self.1.on_restore(c, state, source);
+    }
     fn on_step(&mut self, c: &Component, report: &StepReport, t: f64, h: f64, source: &str) {
         self.0.on_step(c, report, t, h, source);
         self.1.on_step(c, report, t, h, source);
@@ -73,6 +117,9 @@ impl Observer for Both<'_> {
     fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str) {
         self.0.on_log(time, level, name, message);
         self.1.on_log(time, level, name, message);
+    }
+    fn trouble(&self) -> Option<String> {
+        self.0.trouble().or_else(|| self.1.trouble())
     }
 }
 

@@ -8,7 +8,7 @@ mod parameters;
 mod refusals;
 mod sameness;
 
-use sandgate::component::{Causality, ValueReference, VariableTable};
+use sandgate::component::{Causality, ValueReference, Variable, VariableTable};
 use sandgate::scene::Scene;
 
 /// Why a call did nothing.
@@ -131,13 +131,15 @@ impl<'a> Stage<'a> {
         self.scene.run.step
     }
 
-    /// Every value of every row but the number of threads, as bits.
+    /// Every row but the number of threads and what is for the component's host.
+    fn results(&self) -> impl Iterator<Item = &Variable> {
+        let rows = self.table.rows().iter();
+        rows.filter(|v| v.name != "solver.threads" && !self.table.is_for_host(v))
+    }
+
+    /// Every value of these rows, as bits.
     fn everything(&self, driver: &mut dyn Driver) -> Vec<u64> {
-        let rows = self
-            .table
-            .rows()
-            .iter()
-            .filter(|v| v.name != "solver.threads");
+        let rows = self.results();
         rows.flat_map(|v| driver.get(&[v.reference], v.len()).unwrap())
             .map(f64::to_bits)
             .collect()

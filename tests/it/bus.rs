@@ -1,7 +1,9 @@
 //! The bus: its protocol on a real component, without a network; then the program, served, driven by Python clients.
 
 use crate::python;
-use sandgate::bus::{BusError, Protocol, Reply, Request, ServeOptions, Server, SetPoint, Verb};
+use sandgate::bus::{
+    BusError, Protocol, Reply, Request, ServeOptions, Server, SetPoint, Verb, ZenohConfig,
+};
 use sandgate::component::{Component, Mode, StepReport, ValueReference};
 use sandgate::wire::foxglove::LogLevel;
 use sandgate::wire::messages::{AppliedEvent, Command};
@@ -581,10 +583,10 @@ fn a_listener_that_others_can_reach_is_refused_unless_it_is_meant() {
         let options = ServeOptions {
             instance: "small_silo".into(),
             listen: listen.iter().map(|e| (*e).to_owned()).collect(),
-            config_file: file.map(|text| {
+            config: file.map(|text| {
                 let path = folder.path().join("zenoh.json5");
                 std::fs::write(&path, text).unwrap();
-                path
+                ZenohConfig::File(path)
             }),
             ..ServeOptions::default()
         };

@@ -6,6 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use sandgate::fmi::library::Kind;
 use sandgate::fmi::{self, Extent, FmiVersion, Packing, Platform, cross, slot};
 use sandgate::scene;
 
@@ -44,6 +45,7 @@ fn packing(version: FmiVersion, libraries: &[&Path]) -> Packing {
         version,
         libraries: libraries.iter().map(|path| path.to_path_buf()).collect(),
         reference: Extent::Until(0.0),
+        kind: Kind::Plain,
     }
 }
 

@@ -4,6 +4,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use sandgate::fmi::library::Kind;
 use sandgate::fmi::{self, Extent, FmiVersion, Packing};
 use sandgate::scene;
 
@@ -19,6 +20,7 @@ fn packed(scene: &Path, folder: &Path, reference: Extent) -> [PathBuf; 2] {
             version,
             libraries: vec![library().to_path_buf()],
             reference,
+            kind: Kind::Plain,
         };
         fmi::pack_with(&scene, &packing, &out).unwrap_or_else(|why| panic!("{why}"));
         out

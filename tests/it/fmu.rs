@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use sandgate::fmi::{self, FmiVersion};
+use sandgate::fmi::library::Kind;
+use sandgate::fmi::{self, Extent, FmiVersion, Packing};
 use sandgate::scene;
 
 use crate::python::{pytest, root, run, target};
@@ -128,6 +129,76 @@ fn every_way_to_run_a_channel_gives_the_same_bits_and_states_are_safe() {
         ("SANDGATE_FMUS", &all),
     ];
     pytest("test_fmu.py", &environment);
+}
+
+#[test]
+fn logs_of_fmus_run_again_with_the_same_bits() {
+    let folder = scratch("fmu_log");
+    let scene = scheduled_devices(&folder);
+    let fmus = [FmiVersion::V2, FmiVersion::V3].map(|v| packed(&scene, v, &folder));
+    let environment: [(&str, &OsStr); 5] = [
+        ("SANDGATE_SCENE", scene.as_ref()),
+        ("SANDGATE_LIBRARY", library().as_ref()),
+        ("SANDGATE_FMU2", fmus[0].as_ref()),
+        ("SANDGATE_FMU3", fmus[1].as_ref()),
+        ("SANDGATE_PROGRAM", env!("CARGO_BIN_EXE_sandgate").as_ref()),
+    ];
+    pytest("test_fmu_log.py", &environment);
+}
+
+/// The library with Zenoh, built together with the program: so both share the build of all crates. (`sandgate fmu --zenoh`
+/// builds it by itself.)
+fn library_with_zenoh() -> PathBuf {
+    run(
+        "cargo build -p sandgate -p sandgate-fmu-zenoh",
+        Command::new(env!("CARGO"))
+            .args([
+                "build",
+                "--release",
+                "-p",
+                "sandgate",
+                "-p",
+                "sandgate-fmu-zenoh",
+            ])
+            .arg("--target-dir")
+            .arg(target())
+            .current_dir(root()),
+        "the library with Zenoh builds",
+    );
+    target().join("release/libsandgate_fmu_zenoh.so")
+}
+
+#[test]
+fn fmus_publish_on_zenoh_and_take_set_points() {
+    let folder = scratch("fmu_zenoh");
+    let path = scheduled_devices(&folder);
+    let scene = scene::load(&path).unwrap_or_else(|why| panic!("{why}"));
+    let library = library_with_zenoh();
+    let fmus = [FmiVersion::V2, FmiVersion::V3].map(|version| {
+        let out = folder.join(format!("zenoh_{}.fmu", version.name()));
+        let packing = Packing {
+            version,
+            libraries: vec![library.clone()],
+            reference: Extent::Until(0.0),
+            kind: Kind::Zenoh,
+        };
+        fmi::pack_with(&scene, &packing, &out).unwrap_or_else(|why| panic!("{why}"));
+        let size = fs::metadata(&out).expect("it was just written").len();
+        assert!(size < 8_000_000, "{size} bytes");
+        out
+    });
+    let plain = packed(&path, FmiVersion::V3, &folder);
+    let size = fs::metadata(&plain).expect("it was just written").len();
+    assert!(size < 4_000_000, "{size} bytes");
+    let environment: [(&str, &OsStr); 6] = [
+        ("SANDGATE_SCENE", path.as_ref()),
+        ("SANDGATE_LIBRARY", library.as_ref()),
+        ("SANDGATE_FMU2", fmus[0].as_ref()),
+        ("SANDGATE_FMU3", fmus[1].as_ref()),
+        ("SANDGATE_PLAIN", plain.as_ref()),
+        ("SANDGATE_PROGRAM", env!("CARGO_BIN_EXE_sandgate").as_ref()),
+    ];
+    pytest("test_fmu_zenoh.py", &environment);
 }
 
 #[test]

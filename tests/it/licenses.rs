@@ -8,8 +8,14 @@ use std::process::Command;
 
 use crate::python::{root, run};
 
-/// The text in the archive.
-const TEXT: &str = "src/fmi/licenses/third_party.txt";
+/// The texts in archives, and the packages whose libraries they are for.
+const TEXTS: [(&str, &str); 2] = [
+    ("src/fmi/licenses/third_party.txt", "sandgate-fmu"),
+    (
+        "src/fmi/licenses/third_party_zenoh.txt",
+        "sandgate-fmu-zenoh",
+    ),
+];
 
 /// The platform of the libraries that tests pack.
 const TARGET: &str = "x86_64-unknown-linux-gnu";
@@ -23,12 +29,12 @@ struct Package {
     folder: PathBuf,
 }
 
-/// Crates that `sandgate-fmu` needs at run time, without our own and without those that only help the compiler.
-fn packages() -> Vec<Package> {
+/// Crates that a library of ours needs at run time, without our own and without those that only help the compiler.
+fn packages(library: &str) -> Vec<Package> {
     let tree = run(
         "cargo tree",
         Command::new(env!("CARGO"))
-            .args(["tree", "-p", "sandgate-fmu", "-e", "normal,no-proc-macro"])
+            .args(["tree", "-p", library, "-e", "normal,no-proc-macro"])
             .args(["--prefix", "none", "--format", "{p}", "--target", TARGET])
             .current_dir(root()),
         REMEDY,
@@ -109,8 +115,8 @@ fn texts(package: &Package) -> Vec<String> {
         .collect()
 }
 
-fn written() -> String {
-    let packages = packages();
+fn written(library: &str) -> String {
+    let packages = packages(library);
     let mut out = String::from(
         "Libraries inside the binaries of this FMU, and their licences. The Rust standard library is there too:\n\
          MIT OR Apache-2.0, Copyright (c) The Rust Project Contributors.\n\n",
@@ -136,13 +142,15 @@ fn written() -> String {
 
 #[test]
 fn the_licences_in_fmus_are_those_of_the_crates_inside() {
-    let written = written();
-    let path = root().join(TEXT);
-    if std::env::var_os("SANDGATE_REGENERATE").is_some() {
-        fs::write(&path, &written).expect("the source tree is writable");
+    for (text, library) in TEXTS {
+        let written = written(library);
+        let path = root().join(text);
+        if std::env::var_os("SANDGATE_REGENERATE").is_some() {
+            fs::write(&path, &written).expect("the source tree is writable");
+        }
+        assert!(
+            fs::read_to_string(&path).is_ok_and(|found| found == written),
+            "{text} is stale: run SANDGATE_REGENERATE=1 cargo test --release --test it licences"
+        );
     }
-    assert!(
-        fs::read_to_string(&path).is_ok_and(|found| found == written),
-        "{TEXT} is stale: run SANDGATE_REGENERATE=1 cargo test --release --test it licences"
-    );
 }

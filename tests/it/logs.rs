@@ -3,8 +3,10 @@
 use crate::python;
 use mcap::records::MessageHeader;
 use prost::Message;
+use sandgate::component::{Causality, Component};
 use sandgate::record::{
-    Ending, RawEntry, RawReader, RedriveOptions, Survey, Table, check_mass, recover, redrive,
+    Ending, RawEntry, RawReader, RecordOptions, Recorder, RedriveOptions, Survey, Table,
+    check_mass, recover, redrive,
 };
 use sandgate::wire::keys;
 use sandgate::wire::messages::{Applied, Gauge};
@@ -153,6 +155,73 @@ fn a_log_runs_again_with_the_same_bits_and_every_thread_count() {
         said.contains("same bits: 40 steps with 40 inputs"),
         "{said}"
     );
+}
+
+/// Every case, coarse and for a few short steps, its gates and inflows moved as a client would.
+#[test]
+fn logs_of_every_case_run_again_with_gates_and_inflows_moved_live() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let mut moved = 0;
+    let cases = std::fs::read_dir(python::root().join("cases")).unwrap();
+    let mut cases: Vec<PathBuf> = cases.map(|entry| entry.unwrap().path()).collect();
+    cases.retain(|path| path.extension() == Some(OsStr::new("toml")));
+    for path in cases {
+        let scene = sandgate::scene::load(&path).unwrap_or_else(|why| panic!("{why}"));
+        let mut component = Component::new(&scene).unwrap();
+        let table = component.variables().clone();
+        let scale = table.by_name("solver.resolution_scale").unwrap().reference;
+        // As coarse as the scene's rules allow.
+        let coarse = [0.4, 0.5, 0.7, 1.0];
+        let coarse = coarse.into_iter().find(|&value| {
+            let set = component.set(&[scale], &[value]);
+            set.and_then(|()| component.settle()).is_ok()
+        });
+        let file = folder.path().join(format!("{}.mcap", scene.name));
+        let options = RecordOptions {
+            instance: "moved".to_owned(),
+            ..RecordOptions::of(&component)
+        };
+        let mut recorder = Recorder::create(&file, &component, options).unwrap();
+        let source = "client";
+        let value = [coarse.unwrap_or_else(|| panic!("{}: no scale will do", scene.name))];
+        recorder.record_inputs(&component, &[scale], &value, source);
+        component.initialize(0.0, None).unwrap();
+        recorder
+            .record_initialization(&component, 0.0, None, source)
+            .unwrap();
+        let inputs = table
+            .rows()
+            .iter()
+            .filter(|v| v.causality == Causality::Input);
+        let inputs: Vec<_> = inputs.collect();
+        // Nothing dyadic, so that every bit counts.
+        let h = scene.run.step / 3.0;
+        for k in 0..3 {
+            for (i, input) in inputs.iter().enumerate() {
+                let (least, most) = input.range.unwrap();
+                let share = (0.37 * f64::from(k + 1) + 0.11 * i as f64).fract();
+                let value = [least + share * (most - least)];
+                component.set(&[input.reference], &value).unwrap();
+                recorder.record_inputs(&component, &[input.reference], &value, source);
+                moved += 1;
+            }
+            let t = component.time();
+            let report = component.do_step(t, h).unwrap();
+            recorder
+                .record_step(&component, &report, t, h, source)
+                .unwrap();
+        }
+        recorder.finish(&component, "finished").unwrap();
+        let done = redrive(&file, &RedriveOptions::default(), &mut |_| {}).unwrap();
+        assert!(done.is_same(), "{}: {:?}", scene.name, done.difference);
+        assert_eq!(
+            (done.steps, done.same_state),
+            (3, Some(true)),
+            "{}",
+            scene.name
+        );
+    }
+    assert!(moved >= 6, "{moved} inputs were moved");
 }
 
 #[test]

@@ -51,9 +51,10 @@ fn every_table_is_sound() {
             let is_set = matches!(row.causality, Causality::Input | Causality::Parameter);
             assert_eq!(
                 is_set,
-                matches!(row.start, Start::Exact(_)),
+                matches!(row.start, Start::Exact(_) | Start::Empty),
                 "start of {name}"
             );
+            assert_eq!(row.kind == ValueKind::Text, row.start == Start::Empty);
             if let Start::Exact(values) = &row.start {
                 let (least, most) = row.range.expect("whatever is set has a range");
                 assert_eq!(values.len(), row.len());
@@ -96,7 +97,7 @@ fn devices_and_gauges_bring_their_variables() {
         gauge.bed_force.force_y gauge.bed_force.validity gauge.probe.pressure gauge.probe.validity \
         gauge.front.front gauge.front.front_quantile gauge.front.validity mass.initial mass.inflow mass.outflow \
         mass.present mass.error solver.steps solver.iterations solver.step_size solver.particles energy.kinetic \
-        validity.share_dilute validity.share_ill_posed validity.creep_rate";
+        validity.share_dilute validity.share_ill_posed validity.creep_rate log.path log.required zenoh.config";
     assert_eq!(names, expected.split_whitespace().collect::<Vec<_>>());
     let depth = table.by_name("gauge.depth.depth").unwrap();
     assert_eq!(

@@ -147,6 +147,7 @@ struct Names {
     steps: u32,
     output: u32,
     blocked: u32,
+    path: u32,
 }
 
 fn names(component: &Component) -> Names {
@@ -164,6 +165,7 @@ fn names(component: &Component) -> Names {
         steps: find("solver.steps"),
         output: find("energy.kinetic"),
         blocked: ends(".blocked"),
+        path: find("log.path"),
     }
 }
 
@@ -179,7 +181,7 @@ fn ok(status: Status) -> bool {
 }
 
 fn code(code: i32) -> bool {
-    assert!((0..=6).contains(&code), "{code}");
+    assert!((0..=7).contains(&code), "{code}");
     code == 0
 }
 
@@ -224,13 +226,15 @@ fn calls_of_fmi2() -> Vec<(&'static str, Allowed, Call)> {
         "fmi2GetReal", ALL, |h, n| ok(fmi2::fmi2GetReal(h.handle(), of(&[n.output]), 1, to(&mut [0.0])));
         "fmi2GetInteger", ALL, |h, n| ok(fmi2::fmi2GetInteger(h.handle(), of(&[n.steps]), 1, to(&mut [0])));
         "fmi2GetBoolean", ALL, |h, n| ok(fmi2::fmi2GetBoolean(h.handle(), of(&[n.saturate]), 1, to(&mut [0])));
-        "fmi2GetString", NEVER, |h, n| ok(fmi2::fmi2GetString(h.handle(), of(&[n.output]), 1, none()));
+        "fmi2GetString", ALL, |h, n| ok(fmi2::fmi2GetString(h.handle(), of(&[n.path]), 1, to(&mut [ptr::null()])));
+        "fmi2GetString", NEVER, |h, n| ok(fmi2::fmi2GetString(h.handle(), of(&[n.output]), 1, to(&mut [ptr::null()])));
         "fmi2SetReal", SETTABLE, |h, n| ok(fmi2::fmi2SetReal(h.handle(), of(&[n.opening]), 1, of(&[0.5])));
         "fmi2SetReal", BEFORE_STEPS, |h, n| ok(fmi2::fmi2SetReal(h.handle(), of(&[n.scale]), 1, of(&[0.9])));
         "fmi2SetReal", NEVER, |h, n| ok(fmi2::fmi2SetReal(h.handle(), of(&[n.output]), 1, of(&[0.9])));
         "fmi2SetInteger", SETTABLE, |h, n| ok(fmi2::fmi2SetInteger(h.handle(), of(&[n.threads]), 1, of(&[1])));
         "fmi2SetBoolean", SETTABLE, |h, n| ok(fmi2::fmi2SetBoolean(h.handle(), of(&[n.saturate]), 1, of(&[1])));
         "fmi2SetBoolean", NEVER, |h, n| ok(fmi2::fmi2SetBoolean(h.handle(), of(&[n.blocked]), 1, of(&[1])));
+        "fmi2SetString", BEFORE_STEPS, |h, n| ok(fmi2::fmi2SetString(h.handle(), of(&[n.path]), 1, of(&[text(c"x")])));
         "fmi2SetString", NEVER, |h, n| ok(fmi2::fmi2SetString(h.handle(), of(&[n.output]), 1, of(&[text(c"x")])));
         "fmi2GetFMUstate", ALL, |h, _| { let mut p = Place(ptr::null_mut()); let s = fmi2::fmi2GetFMUstate(h.handle(), p.slot()); p.slot().free(); ok(s) };
         "fmi2SetFMUstate", ALL, |h, _| ok(with_state(h, |p| fmi2::fmi2SetFMUstate(h.handle(), p.handle())));
@@ -305,7 +309,11 @@ fn calls_of_fmi3() -> Vec<(&'static str, Allowed, Call)> {
         "fmi3SetUInt32", NEVER, |h, _| ok(fmi3::fmi3SetUInt32(h.handle(), none(), 1, none(), 1));
         "fmi3GetUInt64", NEVER, |h, _| ok(fmi3::fmi3GetUInt64(h.handle(), none(), 1, none(), 1));
         "fmi3SetUInt64", NEVER, |h, _| ok(fmi3::fmi3SetUInt64(h.handle(), none(), 1, none(), 1));
-        "fmi3GetString", NEVER, |h, _| ok(fmi3::fmi3GetString(h.handle(), none(), 1, none(), 1));
+        "fmi3GetString", ALL, |h, n| ok(fmi3::fmi3GetString(h.handle(), of(&[n.path]), 1, to(&mut [ptr::null()]), 1));
+        "fmi3GetString", NEVER, |h, n| ok(fmi3::fmi3GetString(h.handle(), of(&[n.path]), 1, to(&mut [ptr::null(); 2]), 2));
+        "fmi3GetString", NEVER, |h, n| ok(fmi3::fmi3GetString(h.handle(), of(&[n.output]), 1, to(&mut [ptr::null()]), 1));
+        "fmi3SetString", BEFORE_STEPS, |h, n| ok(fmi3::fmi3SetString(h.handle(), of(&[n.path]), 1, of(&[text(c"x")]), 1));
+        "fmi3SetString", NEVER, |h, n| ok(fmi3::fmi3SetString(h.handle(), of(&[n.path]), 1, of(&[text(c"x"), text(c"y")]), 2));
         "fmi3SetString", NEVER, |h, _| ok(fmi3::fmi3SetString(h.handle(), none(), 1, none(), 1));
         "fmi3GetBinary", NEVER, |h, _| ok(fmi3::fmi3GetBinary(h.handle(), none(), 1, none(), none(), 1));
         "fmi3SetBinary", NEVER, |h, _| ok(fmi3::fmi3SetBinary(h.handle(), none(), 1, none(), none(), 1));
@@ -363,6 +371,12 @@ fn calls_of_c() -> Vec<(&'static str, Allowed, Call)> {
         "sandgate_get", ALL, |h, n| code(capi::sandgate_get(h.handle(), of(&[n.threads, n.output]), 2, to(&mut [0.0; 2]), 2));
         "sandgate_get", NEVER, |h, n| code(capi::sandgate_get(h.handle(), of(&[n.output]), 1, to(&mut [0.0; 2]), 2));
         "sandgate_get", NEVER, |h, n| code(capi::sandgate_get(h.handle(), of(&[n.output]), 1, none(), 1));
+        "sandgate_set_text", BEFORE_STEPS, |h, n| code(capi::sandgate_set_text(h.handle(), n.path, text(c"x")));
+        "sandgate_set_text", NEVER, |h, n| code(capi::sandgate_set_text(h.handle(), n.output, text(c"x")));
+        "sandgate_set_text", NEVER, |h, n| code(capi::sandgate_set_text(h.handle(), n.path, none()));
+        "sandgate_get_text", ALL, |h, n| code(capi::sandgate_get_text(h.handle(), n.path, to(&mut [ptr::null()])));
+        "sandgate_get_text", NEVER, |h, n| code(capi::sandgate_get_text(h.handle(), n.output, to(&mut [ptr::null()])));
+        "sandgate_set", NEVER, |h, n| code(capi::sandgate_set(h.handle(), of(&[n.path]), 1, of(&[1.0]), 1));
         "sandgate_step", STEP, |h, _| code(capi::sandgate_step(h.handle(), h.time(), H, none()));
         "sandgate_step", NEVER, |h, _| code(capi::sandgate_step(h.handle(), h.time(), -H, none()));
         "sandgate_step", NEVER, |h, _| code(capi::sandgate_step(h.handle(), f64::NAN, H, none()));

@@ -137,6 +137,7 @@ impl Fmi2 {
         self.outcome(match kind {
             ValueKind::Real => unsafe { fmi2SetReal(c, r, n, values.as_ptr()) },
             ValueKind::Integer => unsafe { fmi2SetInteger(c, r, n, numbers.as_ptr()) },
+            ValueKind::Text => return Err(Refusal::Inexpressible),
             ValueKind::Boolean => unsafe { fmi2SetBoolean(c, r, n, numbers.as_ptr()) },
         })
     }
@@ -148,6 +149,7 @@ impl Fmi2 {
         self.outcome(match kind {
             ValueKind::Real => unsafe { fmi2GetReal(c, r, n, values.as_mut_ptr()) },
             ValueKind::Integer => unsafe { fmi2GetInteger(c, r, n, numbers.as_mut_ptr()) },
+            ValueKind::Text => return Err(Refusal::Inexpressible),
             ValueKind::Boolean => unsafe { fmi2GetBoolean(c, r, n, numbers.as_mut_ptr()) },
         })?;
         if kind != ValueKind::Real {

@@ -140,6 +140,7 @@ impl Fmi3 {
                 let values: Vec<i64> = values.iter().map(|v| *v as i64).collect();
                 unsafe { fmi3SetInt64(c, r, n, values.as_ptr(), m) }
             }
+            ValueKind::Text => return Err(Refusal::Inexpressible),
             ValueKind::Boolean => {
                 let values: Vec<bool> = values.iter().map(|v| *v != 0.0).collect();
                 unsafe { fmi3SetBoolean(c, r, n, values.as_ptr(), m) }
@@ -161,6 +162,7 @@ impl Fmi3 {
                 self.outcome(unsafe { fmi3GetInt64(c, r, n, values.as_mut_ptr(), count) })?;
                 Ok(values.into_iter().map(|v| v as f64).collect())
             }
+            ValueKind::Text => return Err(Refusal::Inexpressible),
             ValueKind::Boolean => {
                 let mut values = vec![false; count];
                 self.outcome(unsafe { fmi3GetBoolean(c, r, n, values.as_mut_ptr(), count) })?;

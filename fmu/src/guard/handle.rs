@@ -59,11 +59,19 @@ impl Slot {
         self.door
             .compare_exchange(OPEN, VISITED, acquire, relaxed)
             .ok()?;
+        let _reopen = Reopen(&self.door);
         // SAFETY: the door was OPEN, so `Door::open` has put a pointer to a living guest here and uses neither it nor
         // the pointer until the door is OPEN again; VISITED makes this the only reference.
-        let result = unsafe { self.guest.get().as_mut() }.map(work);
-        self.door.store(OPEN, Ordering::Release);
-        result
+        unsafe { self.guest.get().as_mut() }.map(work)
+    }
+}
+
+/// Opens the door again when a visit is over, also by a panic: the step waits for it.
+struct Reopen<'d>(&'d AtomicU8);
+
+impl Drop for Reopen<'_> {
+    fn drop(&mut self) {
+        self.0.store(OPEN, Ordering::Release);
     }
 }
 
@@ -98,7 +106,7 @@ impl Handle {
     /// Runs one call on the instance: no second call at the same time, no panic gets out, faults are reported.
     pub(crate) fn call<T>(
         &self,
-        call: &str,
+        call: &'static str,
         need: Need,
         work: impl FnOnce(&mut Instance) -> Result<T, Fault>,
     ) -> Result<T, Fault> {
@@ -108,7 +116,7 @@ impl Handle {
     /// As [`Handle::call`], for a step, which may open the door to the importer.
     pub(crate) fn call_with_door<T>(
         &self,
-        call: &str,
+        call: &'static str,
         need: Need,
         work: impl FnOnce(&mut Instance, &Door<'_>) -> Result<T, Fault>,
     ) -> Result<T, Fault> {
@@ -119,7 +127,8 @@ impl Handle {
             let fault = Fault::border(
                 "another call on this instance is running; an intermediate update may get and set variables only",
             );
-            slot.with_guest(|guest| guest.report(call, &fault));
+            // The importer's logger is C; what panics here is ours.
+            let _ = shield(|| slot.with_guest(|guest| guest.report(call, &fault)));
             return Err(fault);
         }
         // SAFETY: the door was FREE and is BUSY now, so this is the only reference into the cell until it is FREE.
@@ -132,7 +141,7 @@ impl Handle {
     /// Runs one call that gets or sets variables: between other calls, or while a step has the door open.
     pub(crate) fn visit<T>(
         &self,
-        call: &str,
+        call: &'static str,
         work: impl FnOnce(&mut dyn Values) -> Result<T, Fault>,
     ) -> Result<T, Fault> {
         let slot = self.slot(call)?;
@@ -159,7 +168,7 @@ impl Handle {
     }
 
     /// Answers a call that a capability flag says is not there.
-    pub(crate) fn not_provided(&self, call: &str, capability: &str) -> Status {
+    pub(crate) fn not_provided(&self, call: &'static str, capability: &str) -> Status {
         self.call(call, Need::Any, |_| -> Result<(), Fault> {
             Err(Fault::border(format!(
                 "not provided; see {capability} in modelDescription.xml"
@@ -178,17 +187,18 @@ impl Handle {
         if entered.is_ok() {
             // SAFETY: `new` made it with Box::into_raw, and the caller promises not to use the pointer again.
             let slot = unsafe { Box::from_raw(self.0) };
-            let _ = shield(move || drop(slot));
+            let _ = shield(move || slot.instance.into_inner().finish("freed"));
         }
     }
 }
 
 fn guarded<T>(
     instance: &mut Instance,
-    call: &str,
+    call: &'static str,
     need: Need,
     work: impl FnOnce(&mut Instance) -> Result<T, Fault>,
 ) -> Result<T, Fault> {
+    instance.journal.begin(call);
     let result = match (need, instance.broken()) {
         (Need::Sound, Some(how)) => Err(Fault::Broken(format!(
             "an earlier call broke down ({how}); reset the instance or set a state"
@@ -203,10 +213,8 @@ fn guarded<T>(
             }
         },
     };
-    if let Err(fault) = &result {
-        // The importer's logger is C; what panics here is ours.
-        let _ = shield(|| instance.report(call, fault));
-    }
+    // The importer's logger is C; what panics here is ours.
+    let _ = shield(|| instance.answered(call, result.as_ref().err()));
     result
 }
 
@@ -272,6 +280,17 @@ mod tests {
         assert_eq!(mode(&one).expect("sound again"), Mode::Instantiated);
         one.free();
         other.free();
+    }
+
+    #[test]
+    fn a_panic_of_a_visitor_opens_the_door_again() {
+        let door = AtomicU8::new(VISITED);
+        let visit = shield(|| {
+            let _reopen = Reopen(&door);
+            panic!("on purpose");
+        });
+        assert!(visit.is_err_and(|how: String| how.contains("on purpose")));
+        assert_eq!(door.load(Ordering::Acquire), OPEN);
     }
 
     #[test]

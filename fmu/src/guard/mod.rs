@@ -35,6 +35,7 @@ mod tests {
             include_str!("../fmi2.rs"),
             include_str!("../fmi3.rs"),
             include_str!("../instance.rs"),
+            include_str!("../journal.rs"),
             include_str!("../lib.rs"),
             include_str!("../log.rs"),
         ];

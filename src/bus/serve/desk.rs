@@ -4,16 +4,17 @@ use super::failed;
 use super::replies::{Job, Waiting, ended};
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
+use crate::bus::protocol::Fields;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::reply::Reply;
 use crate::bus::request::Request;
 use crate::bus::set_point::SetPoint;
-use crate::bus::status::Shared;
+use crate::bus::status::{Shared, Status, lock};
 use crate::bus::stepping::{Exchange, Note, Task, WAITING_SET_POINTS, WAITING_TASKS};
 use crate::bus::verb::Verb;
-use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{SyncSender, TrySendError};
+use std::sync::{Arc, Mutex};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Subscriber;
 use zenoh::query::{Query, Queryable};
@@ -69,6 +70,58 @@ pub(super) struct Desk {
     pub(super) tasks: SyncSender<Task>,
     pub(super) notes: SyncSender<Note>,
     pub(super) jobs: SyncSender<Job>,
+    /// Where somebody else owns time: what is answered without the component.
+    pub(super) aside: Option<Arc<Aside>>,
+}
+
+/// What is known of a component that somebody else steps.
+pub(super) struct Aside {
+    /// Answer to `describe`.
+    pub(super) description: Fields,
+    /// Values by name as of the last communication point.
+    pub(super) values: Mutex<Fields>,
+}
+
+impl Aside {
+    /// The answer to anything but `status`.
+    fn answer(&self, request: &Request, status: &Status) -> Result<Fields, Refusal> {
+        if request.expect_step.is_some_and(|step| step != status.step) {
+            let message = format!("the component has done {} steps", status.step);
+            return Err(Refusal::new(Code::Conflict, message));
+        }
+        match request.verb {
+            Verb::Describe => Ok(self.description.clone()),
+            Verb::Get => self.get(request.outputs.as_deref()),
+            verb => Err(Refusal::new(
+                Code::NotOwner,
+                format!(
+                    "{}: somebody else steps this component; allowed are describe, status, get, and set-points on in/VARIABLE",
+                    verb.name()
+                ),
+            )),
+        }
+    }
+
+    fn get(&self, names: Option<&[String]>) -> Result<Fields, Refusal> {
+        let values = lock(&self.values);
+        let Some(names) = names else {
+            return Ok(Fields::from_iter([(
+                "outputs".to_owned(),
+                values.clone().into(),
+            )]));
+        };
+        let found = names.iter().map(|name| match values.get(name) {
+            Some(value) => Ok((name.clone(), value.clone())),
+            None => {
+                let known: Vec<&str> = values.keys().map(String::as_str).collect();
+                let known = known.join(", ");
+                let message = format!("unknown variable {name:?}; there are {known}");
+                Err(Refusal::new(Code::UnknownVariable, message))
+            }
+        });
+        let found: Result<Fields, Refusal> = found.collect();
+        Ok(Fields::from_iter([("outputs".to_owned(), found?.into())]))
+    }
 }
 
 impl Desk {
@@ -105,6 +158,14 @@ impl Desk {
             let mut fields = status.figures();
             fields.extend(self.shared.live());
             let reply = Reply::success(&request.req, &status, fields);
+            return self.answer_here(waiting, reply, names);
+        }
+        if let Some(aside) = &self.aside {
+            let status = self.shared.status();
+            let reply = match aside.answer(&request, &status) {
+                Ok(fields) => Reply::success(&request.req, &status, fields),
+                Err(refusal) => Reply::refusal(&request.req, &refusal, &status),
+            };
             return self.answer_here(waiting, reply, names);
         }
         let [.., body] = names.clone();

@@ -4,12 +4,14 @@
 //! replies, one publishes; a subscriber that stands still can hold up publications, never a step or a reply. Every
 //! query is answered exactly once, also when a thread panics or the server ends ([`Waiting`]).
 
+mod beside;
 mod desk;
 mod outlet;
 mod press;
 mod replies;
 mod session;
 
+pub use self::beside::Beside;
 pub use self::outlet::Outlet;
 
 use self::desk::{Desk, Entrances};
@@ -43,14 +45,34 @@ pub struct ServeOptions {
     pub listen: Vec<String>,
     /// Endpoints to connect to, besides those of the configuration file.
     pub connect: Vec<String>,
-    /// Zenoh's configuration (JSON5). Scouting and the admin space stay off whatever it says.
-    pub config_file: Option<PathBuf>,
+    /// Zenoh's configuration. Scouting and the admin space stay off whatever it says.
+    pub config: Option<ZenohConfig>,
     /// Whether other machines may reach a listener.
     pub allow_open_listener: bool,
     /// Simulated over wall time to step by itself (infinite: as fast as possible); none to wait for `step`.
     pub realtime_factor: Option<f64>,
     /// When the one who steps it counts as lost; none: never.
     pub lost: Option<Lost>,
+}
+
+/// Zenoh's own configuration.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ZenohConfig {
+    /// In a file (JSON5).
+    File(PathBuf),
+    /// JSON5 itself.
+    Text(String),
+}
+
+impl ZenohConfig {
+    /// What a parameter says: JSON5 if it begins with a brace, else the path of a file; none if it is empty.
+    #[must_use]
+    pub fn read(text: &str) -> Option<Self> {
+        match text.trim_start().chars().next()? {
+            '{' => Some(Self::Text(text.to_owned())),
+            _ => Some(Self::File(PathBuf::from(text))),
+        }
+    }
 }
 
 /// An open server.
@@ -112,6 +134,7 @@ impl Server {
             tasks: task_queue,
             notes: note_queue,
             jobs,
+            aside: None,
         };
         Ok(Self {
             entrances: Entrances::open(&session, desk)?,

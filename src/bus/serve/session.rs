@@ -1,9 +1,10 @@
 //! The session: an explicit configuration, loopback unless told otherwise, scouting and admin space off.
 
-use super::{ServeOptions, failed};
+use super::{ServeOptions, ZenohConfig, failed};
 use crate::bus::endpoints::{self, DEFAULT_LISTEN};
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
+use serde_json::Value;
 use std::time::Duration;
 use zenoh::{Config, Session, Wait as _};
 
@@ -40,13 +41,7 @@ pub(super) fn open(options: &ServeOptions) -> Result<(Session, Vec<String>), Bus
 /// The configuration but its listeners, and these, checked.
 fn configure(options: &ServeOptions) -> Result<(Config, Vec<String>), BusError> {
     let plain = Config::default();
-    let mut config = match &options.config_file {
-        None => plain.clone(),
-        Some(file) => Config::from_file(file).map_err(|error| BusError::Config {
-            file: file.display().to_string(),
-            reason: error.to_string(),
-        })?,
-    };
+    let mut config = read(options)?;
     let of_file = |key: &str| match (config.get_json(key), plain.get_json(key)) {
         (Ok(own), Ok(default)) if own != default => {
             serde_json::from_str(&own).map_or_else(|_| Vec::new(), |v| endpoints::listed(&v))
@@ -77,6 +72,47 @@ fn configure(options: &ServeOptions) -> Result<(Config, Vec<String>), BusError> 
     Ok((config, listen))
 }
 
+/// The configuration as it was given.
+fn read(options: &ServeOptions) -> Result<Config, BusError> {
+    let (read, from) = match &options.config {
+        None => return Ok(Config::default()),
+        Some(ZenohConfig::File(file)) => (Config::from_file(file), file.display().to_string()),
+        Some(ZenohConfig::Text(text)) => (Config::from_json5(text), "(JSON5 text)".to_owned()),
+    };
+    read.map_err(|error| BusError::Config {
+        file: from,
+        reason: error.to_string(),
+    })
+}
+
+/// As [`open`], for who has no command line: `metadata: {sandgate: {instance: "silo-7", allow_open_listener: true}}` of
+/// the configuration counts as much as the options. Gives the instance's name, too.
+pub(super) fn open_named(
+    options: &ServeOptions,
+) -> Result<(Session, Vec<String>, String), BusError> {
+    let mut options = options.clone();
+    let bad = |reason: String| BusError::Config {
+        file: "metadata.sandgate".to_owned(),
+        reason,
+    };
+    let metadata = read(&options)?.get_json("metadata").unwrap_or_default();
+    let metadata: Value = serde_json::from_str(&metadata).unwrap_or_default();
+    let own = metadata.get("sandgate").and_then(Value::as_object);
+    for (key, value) in own.into_iter().flatten() {
+        match (key.as_str(), value) {
+            ("instance", Value::String(name)) => options.instance.clone_from(name),
+            ("allow_open_listener", Value::Bool(open)) => options.allow_open_listener = *open,
+            _ => {
+                return Err(bad(format!(
+                    "found {key}: {value}, allowed are instance, a text, and allow_open_listener, true or false"
+                )));
+            }
+        }
+    }
+    let (session, listeners) = open(&options)?;
+    Ok((session, listeners, options.instance))
+}
+
 fn as_json(endpoints: &[String]) -> String {
     serde_json::Value::from(endpoints).to_string()
 }
@@ -96,7 +132,7 @@ pub(super) fn refuse_twin(
     keys: &Keys,
     options: &ServeOptions,
 ) -> Result<(), BusError> {
-    if options.connect.is_empty() && options.config_file.is_none() {
+    if options.connect.is_empty() && options.config.is_none() {
         return Ok(());
     }
     let twins = session

@@ -115,10 +115,14 @@ fn ended(survey: &Survey) -> String {
     if let Some(end) = survey.metadata("end") {
         let get = |key: &str| end.get(key).map_or("?", String::as_str);
         return format!(
-            "\"{}\" at t = {} s after {} communication steps, {} messages dropped{}",
+            "\"{}\" at t = {} s after {} communication steps{}, {} messages dropped{}",
             get("reason"),
             get("time"),
             get("communication_steps"),
+            match get("restored") {
+                "0" | "?" => String::new(),
+                times => format!(" ({times} times back to a saved state)"),
+            },
             get("dropped"),
             match end.get("state_hash") {
                 Some(hash) => format!(", state hash {hash}"),

@@ -76,6 +76,7 @@ fn verdict(file: &Path, done: &Redriven) -> String {
         steps,
         inputs,
         compared,
+        restored,
         ..
     } = done;
     if let Some(difference) = &done.difference {
@@ -90,7 +91,11 @@ fn verdict(file: &Path, done: &Redriven) -> String {
         };
         return format!("{file}: DIFFERS first at {difference}{version}");
     }
-    let did = format!("{steps} steps with {inputs} inputs, {compared} messages");
+    let back = match restored {
+        0 => String::new(),
+        times => format!(", {times} times back to a saved state"),
+    };
+    let did = format!("{steps} steps with {inputs} inputs{back}, {compared} messages");
     if done.same_state == Some(false) {
         return format!("{file}: DIFFERS: {did} are equal, but the state at the end is another");
     }

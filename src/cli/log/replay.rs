@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use super::Choice;
-use crate::bus::{Outlet, ServeOptions};
+use crate::bus::{Outlet, ServeOptions, ZenohConfig};
 use crate::cli::{CliError, say, stop};
 use crate::record::{RawEntry, RawMessage, RawReader, Survey, Topics, below_base};
 use crate::wire::keys;
@@ -86,7 +86,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         instance: args.instance.clone().unwrap_or_else(|| own.to_owned()),
         listen: args.listen.clone(),
         connect: args.connect.clone(),
-        config_file: args.zenoh_config.clone(),
+        config: args.zenoh_config.clone().map(ZenohConfig::File),
         allow_open_listener: args.allow_open_listener,
         realtime_factor: None,
         lost: None,

@@ -4,7 +4,7 @@
 //! up to its starting time and goes on below them.
 
 use std::fs::File;
-use std::io::{BufWriter, Write as _};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -37,9 +37,46 @@ pub(super) struct Series {
     pub(super) time: Vec<f64>,
     /// The scalars, in the order of the variables table.
     pub(super) columns: Vec<Column>,
-    file: BufWriter<File>,
+    file: Patient,
     path: PathBuf,
     flushed: Instant,
+    warned: bool,
+}
+
+/// A file that keeps what the disk does not take, and tries again.
+struct Patient {
+    sink: Box<dyn Write>,
+    /// Bytes that are not in the file yet.
+    waiting: Vec<u8>,
+}
+
+impl Patient {
+    fn new(sink: impl Write + 'static) -> Self {
+        Self {
+            sink: Box::new(sink),
+            waiting: Vec::new(),
+        }
+    }
+
+    fn push(&mut self, line: &str) {
+        self.waiting.extend_from_slice(line.as_bytes());
+        self.waiting.push(b'\n');
+    }
+
+    /// Writes what waits, as far as there is room; a line that was cut is gone on with.
+    fn flush(&mut self) -> std::io::Result<()> {
+        let (mut written, mut result) = (0, Ok(()));
+        while written < self.waiting.len() && result.is_ok() {
+            match self.sink.write(&self.waiting[written..]) {
+                Ok(0) => result = Err(std::io::ErrorKind::WriteZero.into()),
+                Ok(n) => written += n,
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+                Err(error) => result = Err(error),
+            }
+        }
+        self.waiting.drain(..written);
+        result
+    }
 }
 
 impl Series {
@@ -63,13 +100,14 @@ impl Series {
             references,
             time: Vec::new(),
             columns,
-            file: BufWriter::new(file),
+            file: Patient::new(file),
             path: path.to_path_buf(),
             flushed: Instant::now(),
+            warned: false,
         };
-        series.write_header()?;
+        series.file.push(&header(&series.columns));
         for row in &kept {
-            series.push(row[0], &row[1..])?;
+            series.push(row[0], &row[1..]);
         }
         series.flush()?;
         // The open file follows its new name: a crash from here on leaves a complete table.
@@ -77,16 +115,20 @@ impl Series {
         Ok(series)
     }
 
-    /// Adds a row with the component's values now.
+    /// Adds a row with the component's values now. Rows that cannot be written (the disk is full) wait in memory and are
+    /// tried again every second; that is told once.
     ///
     /// # Errors
-    /// [`CliError::File`] if the table cannot be written, [`CliError::Component`] if values cannot be read.
+    /// [`CliError::Component`] if values cannot be read.
     pub(super) fn sample(&mut self, component: &Component) -> Result<(), CliError> {
         let mut values = vec![0.0; self.references.len()];
         component.get(&self.references, &mut values)?;
-        self.push(component.time(), &values)?;
-        if self.flushed.elapsed() > Duration::from_secs(1) {
-            self.flush()?;
+        self.push(component.time(), &values);
+        if self.flushed.elapsed() > Duration::from_secs(1)
+            && let Err(error) = self.flush()
+            && !std::mem::replace(&mut self.warned, true)
+        {
+            eprintln!("warning: {error}; the run goes on and tries again every second");
         }
         Ok(())
     }
@@ -100,19 +142,14 @@ impl Series {
         self.file.flush().map_err(|e| cannot_write(&self.path, e))
     }
 
-    fn push(&mut self, time: f64, values: &[f64]) -> Result<(), CliError> {
+    fn push(&mut self, time: f64, values: &[f64]) {
         self.time.push(time);
         let mut line = format!("{time:?}");
         for (column, &value) in self.columns.iter_mut().zip(values) {
             column.values.push(value);
             line.push_str(&format!(",{value:?}"));
         }
-        writeln!(self.file, "{line}").map_err(|e| cannot_write(&self.path, e))
-    }
-
-    fn write_header(&mut self) -> Result<(), CliError> {
-        let header = header(&self.columns);
-        writeln!(self.file, "{header}").map_err(|e| cannot_write(&self.path, e))
+        self.file.push(&line);
     }
 }
 
@@ -195,5 +232,47 @@ fn cannot_write(path: &Path, source: std::io::Error) -> CliError {
         path: path.to_path_buf(),
         source,
         remedy: "make room or choose another folder with --out",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::{Arc, Mutex};
+
+    /// Takes so many bytes and no more.
+    #[derive(Clone, Default)]
+    struct Disk(Arc<Mutex<(Vec<u8>, usize)>>);
+
+    impl Write for Disk {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            let (stored, room) = &mut *self.0.lock().unwrap();
+            let n = bytes.len().min(*room - stored.len());
+            if n == 0 && !bytes.is_empty() {
+                return Err(std::io::ErrorKind::StorageFull.into());
+            }
+            stored.extend_from_slice(&bytes[..n]);
+            Ok(n)
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn what_a_full_disk_does_not_take_is_written_when_there_is_room() {
+        let disk = Disk::default();
+        disk.0.lock().unwrap().1 = 7;
+        let mut file = Patient::new(disk.clone());
+        file.push("0.0,1.5");
+        assert!(file.flush().is_err());
+        file.push("0.5,2.5");
+        assert!(file.flush().is_err());
+        assert_eq!(disk.0.lock().unwrap().0, b"0.0,1.5");
+        disk.0.lock().unwrap().1 = 100;
+        file.flush().unwrap();
+        file.flush().unwrap();
+        assert_eq!(disk.0.lock().unwrap().0, b"0.0,1.5\n0.5,2.5\n");
     }
 }

@@ -75,6 +75,8 @@ pub(super) struct Session {
     pub(super) log: RunLog,
     progress: Progress,
     next_checkpoint: f64,
+    /// Whether it has been told that a checkpoint could not be written.
+    warned: bool,
 }
 
 /// A component ready to be initialised, or at the saved state.
@@ -152,6 +154,7 @@ impl Session {
             folder,
             series,
             log,
+            warned: false,
         };
         session.write_summary("running", None)?;
         session.announce()?;
@@ -207,7 +210,16 @@ impl Session {
         self.series.sample(&self.component)?;
         self.progress.show(&self.component);
         if self.component.time() >= self.next_checkpoint {
-            self.checkpoint()?;
+            match self.checkpoint() {
+                // The checkpoint before it is still there.
+                Err(error @ CliError::File { .. }) => {
+                    if !std::mem::replace(&mut self.warned, true) {
+                        eprintln!("warning: {error}; the run goes on without new checkpoints");
+                    }
+                    self.plan_checkpoint();
+                }
+                other => other?,
+            }
         }
         Ok(())
     }
@@ -227,11 +239,15 @@ impl Session {
         self.folder
             .replace("checkpoint.state", &self.component.save()?)?;
         self.write_summary("running", None)?;
+        self.plan_checkpoint();
+        Ok(())
+    }
+
+    fn plan_checkpoint(&mut self) {
         if let Some(every) = self.plan.checkpoint_every {
             let time = self.component.time();
             self.next_checkpoint = next_point(time, every, f64::INFINITY).unwrap_or(f64::INFINITY);
         }
-        Ok(())
     }
 
     fn write_summary(&self, status: &str, error: Option<&str>) -> Result<(), CliError> {

@@ -195,7 +195,7 @@ fn variable_rows(session: &Session) -> Vec<String> {
         let last = column.values.last().copied().unwrap_or(f64::NAN);
         let unit = match column.kind {
             ValueKind::Real => column.unit,
-            ValueKind::Integer | ValueKind::Boolean => "",
+            ValueKind::Integer | ValueKind::Boolean | ValueKind::Text => "",
         };
         rows.push(format!(
             "  {:width$}  {:>12} {:>12} {:>12}  {unit}",

@@ -97,6 +97,9 @@ impl Observer for Log {
         self.recorder.on_jump(c, event, source);
         self.watch();
     }
+    fn trouble(&self) -> Option<String> {
+        self.recorder.trouble()
+    }
     fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str) {
         self.recorder.on_log(time, level, name, message);
         self.watch();

@@ -79,6 +79,7 @@ fn case(text: &mut String, scene: &Scene) {
                 .map(f64::to_string)
                 .collect::<Vec<_>>()
                 .join(" "),
+            Start::Empty => "\"\"".to_owned(),
             Start::Calculated => String::new(),
         };
         let range = row
@@ -148,6 +149,7 @@ fn kind(row: &Variable) -> &'static str {
         ValueKind::Real => "real",
         ValueKind::Integer => "whole number",
         ValueKind::Boolean => "flag",
+        ValueKind::Text => "text",
     }
 }
 

@@ -1,0 +1,512 @@
+//! What an instance tells the world beside its importer: an MCAP log of all traffic, if its parameter `log.path` names a
+//! file, and, where the library was built with the feature `bus`, publications on Zenoh, if `zenoh.config` is not empty.
+//!
+//! Both begin when initialisation ends and end with terminate, reset or free; they watch and never change a bit, but for
+//! set-points that come over Zenoh. What they hold is the business of `sandgate::record` and `sandgate::bus`.
+
+#[cfg(feature = "bus")]
+mod network;
+#[cfg(not(feature = "bus"))]
+#[path = "journal/no_network.rs"]
+mod network;
+
+use std::path::PathBuf;
+
+use sandgate::component::{
+    Causality, Component, HostSettings, Mode, Start, StepReport, ValueKind, VariableTable, Wish,
+    saved_checksum,
+};
+use sandgate::fmi::{self, FmiVersion};
+use sandgate::record::{RecordError, RecordOptions, Recorder, number};
+pub(crate) use sandgate::wire::Moment;
+use sandgate::wire::foxglove::LogLevel;
+use sandgate::wire::messages::{AppliedEvent, Command, CommandKind};
+use sandgate::wire::{Observer, Unobserved, convert, keys};
+use serde_json::{Map, Value, json};
+
+use crate::fault::Fault;
+use network::Network;
+
+/// Longest name of an instance in topics.
+const LONGEST_NAME: usize = 64;
+
+/// Log and publications of one instance.
+pub(crate) struct Journal {
+    /// "fmi2", "fmi3" or "c".
+    interface: &'static str,
+    version: Option<FmiVersion>,
+    /// As topics and keys have it.
+    instance: String,
+    /// The call that is running.
+    call: &'static str,
+    /// Whether its request is in the log.
+    told: bool,
+    log: Option<Recorder>,
+    network: Option<Network>,
+    /// File of the last log, and how often the component had jumped when it ended.
+    before: Option<(PathBuf, u32)>,
+    /// What the importer has set since the last step, while there is a network.
+    owned: Vec<u32>,
+    /// Whether a failure has been told.
+    complained: bool,
+    complaint: Option<String>,
+    /// Something to tell the importer.
+    event: Option<String>,
+}
+
+impl Journal {
+    /// For an instance that its importer calls `name`; without a version it is one of the plain C interface.
+    pub(crate) fn new(version: Option<FmiVersion>, name: &str) -> Self {
+        Self {
+            interface: match version {
+                Some(FmiVersion::V2) => "fmi2",
+                Some(FmiVersion::V3) => "fmi3",
+                None => "c",
+            },
+            version,
+            instance: topic_name(name),
+            call: "",
+            told: false,
+            log: None,
+            network: None,
+            before: None,
+            owned: Vec::new(),
+            complained: false,
+            complaint: None,
+            event: None,
+        }
+    }
+
+    /// A text that this library can do nothing with is refused when it is set.
+    pub(crate) fn check_text(name: &str, text: &str) -> Result<(), Fault> {
+        match Network::REFUSAL {
+            Some(why) if name == "zenoh.config" && !text.is_empty() => Err(Fault::border(format!(
+                "{name}: found {text:?}, allowed \"\": {why}"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// A call begins.
+    pub(crate) fn begin(&mut self, call: &'static str) {
+        self.call = call;
+        self.told = false;
+    }
+
+    /// It asks to step.
+    pub(crate) fn asks_step(&mut self, component: &Component, t: f64, h: f64) {
+        self.request(component, || json!({"t": number(t), "h": number(h)}));
+    }
+
+    /// It asks to set variables.
+    pub(crate) fn asks_set(&mut self, component: &Component, references: &[u32], values: &[f64]) {
+        self.request(component, || {
+            named(component.variables(), references, values)
+        });
+    }
+
+    /// It asks for what its name says.
+    pub(crate) fn asks(&mut self, component: &Component) {
+        self.request(component, || json!({}));
+    }
+
+    fn request(&mut self, component: &Component, body: impl FnOnce() -> Value) {
+        if self.log.is_some() {
+            self.told = true;
+            let body = body();
+            self.command(component, CommandKind::Request, body, "");
+        }
+    }
+
+    /// What became of it. Calls that only read are not in the log unless they were refused.
+    pub(crate) fn reply(&mut self, component: &Component, result: Result<(), &Fault>) {
+        if let Err(fault) = result {
+            let line = format!("{}: {fault}", self.call);
+            self.line(component, LogLevel::Error, &line);
+        }
+        if self.log.is_none() || (result.is_ok() && !self.told) {
+            return;
+        }
+        if !self.told {
+            self.command(component, CommandKind::Request, json!({}), "");
+        }
+        let (body, status) = match result {
+            Ok(()) => (json!({"ok": true, "time": number(component.time())}), "ok"),
+            Err(fault) => (
+                json!({"ok": false, "message": fault.to_string()}),
+                fault.code(),
+            ),
+        };
+        self.command(component, CommandKind::Reply, body, status);
+        self.told = false;
+    }
+
+    fn command(&mut self, component: &Component, kind: CommandKind, body: Value, status: &str) {
+        let Some(log) = &mut self.log else { return };
+        let time = component.time();
+        let command = Command {
+            timestamp: Some(convert::timestamp(time)),
+            time,
+            kind: kind as i32,
+            interface: self.interface.to_owned(),
+            verb: self.call.to_owned(),
+            request: String::new(),
+            client: String::new(),
+            body: body.to_string(),
+            status: status.to_owned(),
+        };
+        log.on_command(&command);
+    }
+
+    /// What was told to the importer as a warning.
+    pub(crate) fn warning(&mut self, component: &Component, text: &str) {
+        self.line(component, LogLevel::Warning, text);
+    }
+
+    /// A line for people.
+    fn line(&mut self, component: &Component, level: LogLevel, text: &str) {
+        self.each(|one, source| one.on_log(component.time(), level, source, text));
+    }
+
+    /// Initialisation is about to end: begins the log and opens the network, if there shall be any. Gives whether it did.
+    pub(crate) fn open(&mut self, component: &Component) -> Result<bool, Fault> {
+        let HostSettings {
+            log_path,
+            zenoh_config,
+            ..
+        } = component.host_settings();
+        let (logs, publishes) = (!log_path.is_empty(), !zenoh_config.is_empty());
+        if !logs && !publishes {
+            return Ok(false);
+        }
+        if publishes {
+            self.connect(component)?;
+        }
+        if logs {
+            match self.create(component, "start") {
+                Ok(log) => self.log = Some(log),
+                Err(fault) => {
+                    self.discard();
+                    return Err(fault);
+                }
+            }
+        }
+        self.tell_start(component)?;
+        Ok(true)
+    }
+
+    /// What was set before anybody listened.
+    fn tell_start(&mut self, component: &Component) -> Result<(), Fault> {
+        let settable = component.variables().rows().iter().filter(|row| {
+            matches!(row.causality, Causality::Parameter | Causality::Input)
+                && row.kind != ValueKind::Text
+                && !component.variables().is_for_host(row)
+        });
+        for row in settable {
+            let mut now = vec![0.0; row.len()];
+            component.get(&[row.reference], &mut now)?;
+            if row.start != Start::Exact(now.clone()) {
+                self.each(|one, source| one.on_input(component, &[row.reference], &now, source));
+            }
+        }
+        for (reference, slope) in component.input_slopes() {
+            self.each(|one, source| one.on_slopes(component, &[reference], &[slope], source));
+        }
+        Ok(())
+    }
+
+    fn connect(&mut self, component: &Component) -> Result<(), Fault> {
+        let name = match self.instance.as_str() {
+            "" => component.scene().name.as_str(),
+            own => own,
+        };
+        let text = &component.host_settings().zenoh_config;
+        let network = Network::open(component, text, name)
+            .map_err(|why| Fault::Outside(format!("zenoh.config: {why}")))?;
+        self.event = Some(network.announcement());
+        self.network = Some(network);
+        Ok(())
+    }
+
+    fn create(&mut self, component: &Component, reason: &str) -> Result<Recorder, Fault> {
+        let settings = component.host_settings();
+        // Importers change the directory as they like; the file stays where it is meant now.
+        let path = std::path::absolute(&settings.log_path)
+            .map_err(|why| Fault::Outside(format!("log.path {:?}: {why}", settings.log_path)))?;
+        let mut options = RecordOptions {
+            required: settings.log_required,
+            reason: reason.to_owned(),
+            ..RecordOptions::of(component)
+        };
+        if !self.instance.is_empty() {
+            options.instance.clone_from(&self.instance);
+        }
+        if let Some(version) = self.version {
+            let text = fmi::description(component, version).into_bytes();
+            let name = "modelDescription.xml".to_owned();
+            options.attachments = vec![(name, "application/xml".to_owned(), text)];
+        }
+        let jumps = match &self.before {
+            Some((before, jumps)) if *before == path => *jumps,
+            _ => 0,
+        };
+        let log = Recorder::create_after(&path, jumps, component, options).map_err(told)?;
+        self.before = Some((path, log.next_epoch()));
+        (self.complained, self.complaint) = (false, None);
+        Ok(log)
+    }
+
+    /// The component was initialised.
+    pub(crate) fn initialized(&mut self, component: &Component) -> Result<(), Fault> {
+        let (start, stop) = (component.time(), component.stop_time());
+        self.each(|one, source| one.on_initialize(component, start, stop, source));
+        self.watch()
+    }
+
+    /// Initialisation was refused after all.
+    pub(crate) fn discard(&mut self) {
+        if let Some(log) = self.log.take() {
+            if let Err(error) = log.discard() {
+                self.complaint = Some(error.to_string());
+            }
+            // The name is free again.
+            if let Some((_, jumps)) = &mut self.before {
+                *jumps = jumps.saturating_sub(1);
+            }
+        }
+        self.disconnect();
+    }
+
+    fn disconnect(&mut self) {
+        self.owned.clear();
+        if let Some(network) = self.network.take()
+            && let Err(why) = network.close()
+        {
+            self.complaint = Some(why);
+        }
+    }
+
+    /// Variables were set.
+    pub(crate) fn set(&mut self, component: &Component, references: &[u32], values: &[f64]) {
+        self.own(references);
+        self.each(|one, source| one.on_input(component, references, values, source));
+    }
+
+    /// Inputs were given slopes.
+    pub(crate) fn slopes(&mut self, component: &Component, references: &[u32], slopes: &[f64]) {
+        self.own(references);
+        self.each(|one, source| one.on_slopes(component, references, slopes, source));
+    }
+
+    fn own(&mut self, references: &[u32]) {
+        if self.network.is_some() {
+            self.owned.extend(references);
+        }
+    }
+
+    /// Inside a step inputs were set, or an early end was asked for.
+    pub(crate) fn moment(&mut self, component: &Component, moment: &Moment) {
+        if moment.inputs.is_empty() && moment.wish == Wish::GoOn {
+            return;
+        }
+        self.each(|one, source| one.on_moment(component, moment, source));
+    }
+
+    /// Before a step: a log that is required and has failed lets nothing go on; set-points are taken.
+    pub(crate) fn before_step(&mut self, component: &mut Component) -> Result<(), Fault> {
+        if let Some(log) = &self.log
+            && log.is_required()
+            && let Some(failure) = log.failure()
+        {
+            return Err(told(RecordError::Required(failure)));
+        }
+        if let Some(network) = &mut self.network {
+            let mut nobody = Unobserved;
+            let log: &mut dyn Observer = match &mut self.log {
+                Some(log) => log,
+                None => &mut nobody,
+            };
+            network.apply(component, &self.owned, log);
+            self.owned.clear();
+        }
+        Ok(())
+    }
+
+    /// A step was done from `t` over `h` [s].
+    pub(crate) fn step(
+        &mut self,
+        component: &Component,
+        report: &StepReport,
+        t: f64,
+        h: f64,
+    ) -> Result<(), Fault> {
+        self.each(|one, source| one.on_step(component, report, t, h, source));
+        self.watch()
+    }
+
+    /// A step was refused or failed.
+    pub(crate) fn failed_step(&mut self) {
+        self.each(|one, _| one.on_failed_step());
+    }
+
+    /// The state was saved.
+    pub(crate) fn saved(&mut self, component: &Component, bytes: &[u8]) -> Result<(), Fault> {
+        if let Some(state) = saved_checksum(bytes) {
+            self.each(|one, source| one.on_save(component, &state, source));
+        }
+        self.watch()
+    }
+
+    /// The component has gone to a saved state.
+    pub(crate) fn restored(&mut self, component: &Component, bytes: &[u8]) -> Result<(), Fault> {
+        if matches!(component.mode(), Mode::Instantiated | Mode::Initialization) {
+            self.end("restored");
+            return Ok(());
+        }
+        let state = saved_checksum(bytes).unwrap_or_default();
+        self.each(|one, source| one.on_restore(component, &state, source));
+        if component.mode() == Mode::Stepping
+            && let Err(fault) = self.begin_late(component)
+        {
+            if component.host_settings().log_required {
+                return Err(fault);
+            }
+            self.complaint = Some(fault.to_string());
+        }
+        self.watch()
+    }
+
+    /// An instance that was not initialised here but went to a state: what its parameters ask for begins now.
+    fn begin_late(&mut self, component: &Component) -> Result<(), Fault> {
+        let settings = component.host_settings();
+        if self.network.is_none() && !settings.zenoh_config.is_empty() {
+            self.connect(component)?;
+            if let Some(network) = &mut self.network {
+                network
+                    .observer()
+                    .on_jump(component, AppliedEvent::Restore, self.interface);
+            }
+        }
+        if self.log.is_none() && !settings.log_path.is_empty() {
+            self.log = Some(self.create(component, "restored")?);
+        }
+        Ok(())
+    }
+
+    /// The component was reset, or is no longer what it was: nothing more is told.
+    pub(crate) fn end(&mut self, reason: &str) {
+        if let Some(log) = self.take()
+            && let Err(error) = log.end(reason)
+        {
+            self.complaint = Some(error.to_string());
+        }
+        self.disconnect();
+    }
+
+    /// The log, and remembers how often its component has jumped.
+    fn take(&mut self) -> Option<Recorder> {
+        let log = self.log.take()?;
+        if let Some((_, jumps)) = &mut self.before {
+            *jumps = log.next_epoch();
+        }
+        Some(log)
+    }
+
+    /// The component has come to its end: so do log and publications.
+    pub(crate) fn finish(&mut self, component: &Component, reason: &str) -> Result<(), Fault> {
+        self.disconnect();
+        let Some(log) = self.take() else {
+            return Ok(());
+        };
+        let finished = log.finish(component, reason).map_err(told)?;
+        if let Some(failure) = finished.failure
+            && !self.complained
+        {
+            self.complaint = Some(failure.to_string());
+        }
+        Ok(())
+    }
+
+    /// A failure of a log that is not required, once.
+    pub(crate) fn take_complaint(&mut self) -> Option<String> {
+        let complaint = self.complaint.take()?;
+        self.complained = true;
+        Some(format!("{complaint}; the component goes on without it"))
+    }
+
+    /// Something that happened here.
+    pub(crate) fn take_event(&mut self) -> Option<String> {
+        self.event.take()
+    }
+
+    /// Tells log and network, with the name of the interface.
+    fn each(&mut self, mut tell: impl FnMut(&mut dyn Observer, &str)) {
+        if let Some(log) = &mut self.log {
+            tell(log, self.interface);
+        }
+        if let Some(network) = &mut self.network {
+            tell(network.observer(), self.interface);
+        }
+    }
+
+    /// Looks how the log took what it was told.
+    fn watch(&mut self) -> Result<(), Fault> {
+        let Some(log) = &mut self.log else {
+            return Ok(());
+        };
+        let trouble = log.take_trouble();
+        if let Some(network) = &self.network {
+            network.tell_trouble(log.failure().map(|failure| failure.to_string()));
+        }
+        if log.is_required() {
+            return trouble.map_or(Ok(()), |error| Err(told(error)));
+        }
+        if !self.complained {
+            let failure = log.failure().map(|failure| failure.to_string());
+            self.complaint = failure.or_else(|| trouble.map(|error| error.to_string()));
+        }
+        Ok(())
+    }
+}
+
+fn told(error: RecordError) -> Fault {
+    match error {
+        RecordError::Required(failure) => Fault::Outside(format!(
+            "{failure}; the log is required, so nothing goes on (the parameter log.required = false lets it)"
+        )),
+        other => Fault::Outside(format!("log.path: {other}")),
+    }
+}
+
+/// Values by name, for requests.
+fn named(table: &VariableTable, references: &[u32], values: &[f64]) -> Value {
+    let mut rest = values;
+    let mut map = Map::new();
+    for reference in references {
+        let Some(row) = table.by_reference(*reference) else {
+            map.insert(format!("unknown reference {reference}"), Value::Null);
+            break;
+        };
+        let (own, others) = rest.split_at(row.len().min(rest.len()));
+        rest = others;
+        let value = match own {
+            [one] => number(*one),
+            several => several.iter().map(|v| number(*v)).collect(),
+        };
+        map.insert(row.name.clone(), value);
+    }
+    Value::Object(map)
+}
+
+/// A name that topics can have: lower case, anything but letters, digits, `_` and `-` replaced; empty if nothing is left.
+fn topic_name(name: &str) -> String {
+    let allowed = |c: char| match c.to_ascii_lowercase() {
+        c @ ('a'..='z' | '0'..='9' | '_' | '-') => c,
+        _ => '_',
+    };
+    let name: String = name.chars().map(allowed).take(LONGEST_NAME).collect();
+    match keys::base(keys::ROOT, &name) {
+        Ok(_) => name,
+        Err(_) => String::new(),
+    }
+}

@@ -1,0 +1,55 @@
+//! Publications of an instance on Zenoh: what `sandgate::bus` does beside an importer.
+
+use sandgate::bus::{Beside, ServeOptions, ZenohConfig};
+use sandgate::component::Component;
+use sandgate::wire::Observer;
+
+/// An open session.
+pub(super) struct Network(Beside);
+
+impl Network {
+    /// Nothing is in the way.
+    pub(super) const REFUSAL: Option<&'static str> = None;
+
+    /// Opens a session by the parameter's text.
+    pub(super) fn open(component: &Component, text: &str, name: &str) -> Result<Self, String> {
+        let options = ServeOptions {
+            instance: name.to_owned(),
+            config: ZenohConfig::read(text),
+            ..ServeOptions::default()
+        };
+        let beside = Beside::open(component, &options).map_err(|error| error.to_string())?;
+        Ok(Self(beside))
+    }
+
+    /// Where it is found.
+    pub(super) fn announcement(&self) -> String {
+        format!(
+            "publishing sandgate/v1/{}, listening on {}",
+            self.0.instance(),
+            self.0.listeners().join(", ")
+        )
+    }
+
+    pub(super) fn observer(&mut self) -> &mut dyn Observer {
+        &mut self.0
+    }
+
+    /// Sets what set-points ask for, but what the importer has set itself.
+    pub(super) fn apply(
+        &mut self,
+        component: &mut Component,
+        owned: &[u32],
+        log: &mut dyn Observer,
+    ) {
+        self.0.apply(component, owned, log);
+    }
+
+    pub(super) fn tell_trouble(&self, trouble: Option<String>) {
+        self.0.tell_trouble(trouble);
+    }
+
+    pub(super) fn close(self) -> Result<(), String> {
+        self.0.close().map_err(|error| error.to_string())
+    }
+}

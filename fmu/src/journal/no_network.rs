@@ -1,0 +1,39 @@
+//! Instead of `network` where the library is built without the feature `bus`: there is no session, and a configuration of
+//! one is refused when it is set.
+
+use sandgate::component::Component;
+use sandgate::wire::Observer;
+
+/// A session that cannot be.
+pub(super) enum Network {}
+
+impl Network {
+    /// Why there is none.
+    pub(super) const REFUSAL: Option<&'static str> = Some(
+        "this library was built without Zenoh; pack the FMU with `sandgate fmu --zenoh` (fmu/README.md)",
+    );
+
+    pub(super) fn open(_: &Component, _: &str, _: &str) -> Result<Self, String> {
+        Err(Self::REFUSAL.unwrap_or_default().to_owned())
+    }
+
+    pub(super) fn announcement(&self) -> String {
+        match *self {}
+    }
+
+    pub(super) fn observer(&mut self) -> &mut dyn Observer {
+        match *self {}
+    }
+
+    pub(super) fn apply(&mut self, _: &mut Component, _: &[u32], _: &mut dyn Observer) {
+        match *self {}
+    }
+
+    pub(super) fn tell_trouble(&self, _: Option<String>) {
+        match *self {}
+    }
+
+    pub(super) fn close(self) -> Result<(), String> {
+        match self {}
+    }
+}

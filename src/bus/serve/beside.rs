@@ -1,0 +1,301 @@
+//! A component that somebody else steps (an FMU's importer, a C program) on the network: it is published and takes
+//! set-points, but time stays with its owner, and requests that would move it are refused.
+//!
+//! Publishing runs on a thread of its own, as for a server; set-points wait in the same bounded queue until the owner's
+//! next step, which takes them.
+
+use super::desk::{Aside, Desk, Entrances};
+use super::press::Press;
+use super::replies::send_replies;
+use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn};
+use crate::bus::error::BusError;
+use crate::bus::keys::Keys;
+use crate::bus::publish::{LastValues, Publisher, WAITING_BATCHES};
+use crate::bus::refusal::{Code, Refusal};
+use crate::bus::set_point::SetPoint;
+use crate::bus::status::{Shared, Status, lock};
+use crate::bus::stepping::{Note, Task, WAITING_NOTES, WAITING_TASKS};
+use crate::bus::values::{self, Assignment};
+use crate::bus::{Protocol, stepping};
+use crate::component::{Component, StepReport, ValueReference};
+use crate::wire::foxglove::LogLevel;
+use crate::wire::messages::{AppliedEvent, Command, CommandKind};
+use crate::wire::{Both, Moment, Observer};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread::JoinHandle;
+use zenoh::{Session, Wait as _};
+
+/// A component on the network beside its owner.
+pub struct Beside {
+    session: Session,
+    listeners: Vec<String>,
+    instance: String,
+    publisher: Publisher,
+    shared: Arc<Shared>,
+    aside: Arc<Aside>,
+    tasks: Receiver<Task>,
+    notes: Receiver<Note>,
+    entrances: Entrances,
+    threads: Vec<JoinHandle<()>>,
+    epoch: u64,
+    /// The last set-point of each variable, until its owner sets it.
+    held: BTreeMap<ValueReference, SetPoint>,
+}
+
+impl Beside {
+    /// Opens the session and lets others in. Nothing is published before the component is told to be initialised or
+    /// to have jumped.
+    ///
+    /// # Errors
+    /// As [`Server::open`](super::Server::open).
+    pub fn open(component: &Component, options: &ServeOptions) -> Result<Self, BusError> {
+        let (session, listeners, instance) = session::open_named(options)?;
+        let keys = Keys::new(&instance)?;
+        session::refuse_twin(&session, &keys, options)?;
+        let (batches, publications) = sync_channel(WAITING_BATCHES);
+        let (jobs, replies) = sync_channel(WAITING_REPLIES);
+        let (task_queue, tasks) = sync_channel(WAITING_TASKS);
+        let (note_queue, notes) = sync_channel(WAITING_NOTES);
+        let last = Arc::new(LastValues::default());
+        let particles_wanted = Arc::new(AtomicBool::new(false));
+        let shared = Arc::new(Shared::new(Status::of(component, 0, None)));
+        let publisher = Publisher::new(
+            keys.base(),
+            component,
+            batches,
+            last.clone(),
+            particles_wanted.clone(),
+            shared.clone(),
+        );
+        let press = Press::new(session.clone(), &keys, particles_wanted)?;
+        let threads = vec![
+            spawn("sandgate-publish", move || press.run(&publications))?,
+            spawn("sandgate-reply", move || send_replies(&replies, &last))?,
+        ];
+        let aside = Arc::new(Aside {
+            description: Protocol::new(keys.base(), None).description(component),
+            values: Default::default(),
+        });
+        let desk = Desk {
+            keys,
+            shared: shared.clone(),
+            tasks: task_queue,
+            notes: note_queue,
+            jobs,
+            aside: Some(aside.clone()),
+        };
+        let mut beside = Self {
+            entrances: Entrances::open(&session, desk)?,
+            session,
+            listeners,
+            instance,
+            publisher,
+            shared,
+            aside,
+            tasks,
+            notes,
+            threads,
+            epoch: 0,
+            held: BTreeMap::new(),
+        };
+        beside.update(component);
+        Ok(beside)
+    }
+
+    /// Where clients connect to, with real ports.
+    #[must_use]
+    pub fn listeners(&self) -> &[String] {
+        &self.listeners
+    }
+
+    /// Its name in keys.
+    #[must_use]
+    pub fn instance(&self) -> &str {
+        &self.instance
+    }
+
+    /// Before a step: sets what set-points ask for. The owner wins: of a variable that it has set since the last step
+    /// (`owned`) a set-point that came meanwhile is refused, and an earlier one holds no longer. Any other holds from
+    /// this step on, also when the owner goes back to an earlier state. `other` hears what was set, and what was asked
+    /// and answered since the last call.
+    pub fn apply(
+        &mut self,
+        component: &mut Component,
+        owned: &[ValueReference],
+        other: &mut dyn Observer,
+    ) {
+        self.tell_notes(component, other);
+        self.held.retain(|reference, _| !owned.contains(reference));
+        while let Ok(task) = self.tasks.try_recv() {
+            let Task::SetPoint(point) = task else {
+                continue; // The desk hands on nothing else.
+            };
+            self.shared.waiting_set_points.fetch_sub(1, Relaxed);
+            match self.set(component, &point, owned, other) {
+                Ok(reference) => {
+                    self.held.insert(reference, point);
+                }
+                Err(refusal) => self.refuse(component, &refusal, other),
+            }
+        }
+        for point in self.held.values().cloned().collect::<Vec<_>>() {
+            if let Err(refusal) = self.hold(component, &point, other) {
+                self.refuse(component, &refusal, other);
+            }
+        }
+    }
+
+    fn set(
+        &mut self,
+        component: &mut Component,
+        point: &SetPoint,
+        owned: &[ValueReference],
+        other: &mut dyn Observer,
+    ) -> Result<ValueReference, Refusal> {
+        let inputs = [(point.variable.clone(), point.values.clone())];
+        let assignment = Assignment::resolve(component.variables(), &inputs)?;
+        let [reference] = assignment.references[..] else {
+            return Err(Refusal::new(
+                Code::Internal,
+                "one variable is one reference",
+            ));
+        };
+        if owned.contains(&reference) {
+            let message = format!("{}: its owner sets it", point.variable);
+            return Err(Refusal::new(Code::NotOwner, message));
+        }
+        component.set(&[reference], &assignment.values)?;
+        let source = point.source();
+        Both(other, &mut self.publisher).on_input(
+            component,
+            &[reference],
+            &assignment.values,
+            source,
+        );
+        self.tell_clamped(component, other);
+        Ok(reference)
+    }
+
+    /// Sets it again if the component holds another value, as after a roll-back.
+    fn hold(
+        &mut self,
+        component: &mut Component,
+        point: &SetPoint,
+        other: &mut dyn Observer,
+    ) -> Result<(), Refusal> {
+        let inputs = [(point.variable.clone(), point.values.clone())];
+        let assignment = Assignment::resolve(component.variables(), &inputs)?;
+        if assignment.present(component)?.values == assignment.values {
+            return Ok(());
+        }
+        self.set(component, point, &[], other).map(drop)
+    }
+
+    fn tell_clamped(&mut self, component: &mut Component, other: &mut dyn Observer) {
+        for note in component.take_notes() {
+            let mut both = Both(other, &mut self.publisher);
+            both.on_log(component.time(), LogLevel::Warning, "bus", &note);
+        }
+    }
+
+    fn refuse(&mut self, component: &Component, refusal: &Refusal, other: &mut dyn Observer) {
+        self.shared.refused_set_points.fetch_add(1, Relaxed);
+        let text = format!("set-point refused: {refusal}");
+        let mut both = Both(other, &mut self.publisher);
+        both.on_log(component.time(), LogLevel::Warning, "bus", &text);
+    }
+
+    fn tell_notes(&mut self, component: &Component, other: &mut dyn Observer) {
+        while let Ok(note) = self.notes.try_recv() {
+            match note {
+                Note::Refused(text) => {
+                    let mut both = Both(other, &mut self.publisher);
+                    both.on_log(component.time(), LogLevel::Warning, "bus", &text);
+                }
+                Note::Call(mut exchange) => {
+                    let time = component.time();
+                    let request = stepping::command(time, &mut exchange, CommandKind::Request);
+                    other.on_command(&request);
+                    let reply = stepping::command(time, &mut exchange, CommandKind::Reply);
+                    other.on_reply(&reply);
+                }
+            }
+        }
+    }
+
+    /// What `status` says of the log.
+    pub fn tell_trouble(&self, trouble: Option<String>) {
+        self.shared.set_log_failure(trouble);
+    }
+
+    /// Status and values are those of now.
+    fn update(&mut self, component: &Component) {
+        self.shared.update(Status::of(component, self.epoch, None));
+        let rows = values::rows(component.variables(), None).unwrap_or_default();
+        // Values of the component's own rows can be read.
+        if let Ok(values) = values::read(component, &rows) {
+            *lock(&self.aside.values) = values;
+        }
+    }
+
+    /// Ends the session: nobody gets in any more, what waits is published, threads end.
+    ///
+    /// # Errors
+    /// [`BusError::Zenoh`].
+    pub fn close(self) -> Result<(), BusError> {
+        drop(self.entrances);
+        drop(self.tasks);
+        drop(self.publisher);
+        for thread in self.threads {
+            // A panic there was reported by the thread itself, and who waited was answered.
+            let _ = thread.join();
+        }
+        let closed = self.session.close().wait();
+        closed.map_err(failed("close the session"))
+    }
+}
+
+impl Observer for Beside {
+    fn on_initialize(&mut self, c: &Component, start: f64, stop: Option<f64>, source: &str) {
+        self.publisher.on_initialize(c, start, stop, source);
+        self.update(c);
+    }
+
+    fn on_input(&mut self, c: &Component, refs: &[ValueReference], values: &[f64], source: &str) {
+        self.publisher.on_input(c, refs, values, source);
+    }
+
+    fn on_slopes(&mut self, c: &Component, inputs: &[ValueReference], slopes: &[f64], who: &str) {
+        self.publisher.on_slopes(c, inputs, slopes, who);
+    }
+
+    fn on_moment(&mut self, component: &Component, moment: &Moment, source: &str) {
+        self.publisher.on_moment(component, moment, source);
+    }
+
+    fn on_failed_step(&mut self) {
+        self.publisher.on_failed_step();
+    }
+
+    fn on_step(&mut self, c: &Component, report: &StepReport, t: f64, h: f64, source: &str) {
+        self.publisher.on_step(c, report, t, h, source);
+        self.update(c);
+    }
+
+    fn on_command(&mut self, _: &Command) {}
+
+    fn on_reply(&mut self, _: &Command) {}
+
+    fn on_jump(&mut self, component: &Component, event: AppliedEvent, source: &str) {
+        self.epoch += 1;
+        self.publisher.on_jump(component, event, source);
+        self.update(component);
+    }
+
+    fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str) {
+        self.publisher.on_log(time, level, name, message);
+    }
+}

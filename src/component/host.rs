@@ -1,0 +1,161 @@
+//! Parameters for the component's host: where it logs and whether it publishes. They stand in the one table, so that FMI and
+//! C have them, but the component itself does nothing with them: no bit depends on them, and states do not carry them.
+
+use super::access::bad;
+use super::lifecycle::{self, Call};
+use super::variables::{Source, ValueKind, Variable, VariableTable};
+use super::{Component, Error, ValueReference};
+use crate::scene::Scene;
+
+/// What the host of a component is asked to do beside stepping it. Fixed once the component is initialised; a reset
+/// goes back to the start values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HostSettings {
+    /// `log.path`: file of the MCAP log, "" for none.
+    pub log_path: String,
+    /// `log.required`: whether a log that cannot be written is an error of the step; otherwise it is told once.
+    pub log_required: bool,
+    /// `zenoh.config`: Zenoh's configuration, a path or JSON5; "" for no Zenoh.
+    pub zenoh_config: String,
+}
+
+impl HostSettings {
+    /// Those at the start.
+    pub(super) fn of(scene: &Scene) -> Self {
+        Self {
+            log_path: String::new(),
+            log_required: scene.log.required,
+            zenoh_config: String::new(),
+        }
+    }
+}
+
+impl VariableTable {
+    /// Whether a variable is for the host of a component ([`HostSettings`]) and not for the component.
+    #[must_use]
+    pub fn is_for_host(&self, row: &Variable) -> bool {
+        self.source(row.reference)
+            .is_some_and(|source| source.is_for_host())
+    }
+}
+
+impl Component {
+    /// What its host is asked to do.
+    #[must_use]
+    pub fn host_settings(&self) -> &HostSettings {
+        &self.host
+    }
+
+    /// Takes over another component's, in any mode: for who builds a component anew in the place of one.
+    pub fn set_host_settings(&mut self, settings: HostSettings) {
+        self.host = settings;
+    }
+
+    /// Sets texts, all or none. Allowed until initialisation ends.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`]: unknown reference, a variable that is no text, another number of texts;
+    /// [`Error::NotAllowedNow`]. Nothing is changed then.
+    pub fn set_texts(
+        &mut self,
+        references: &[ValueReference],
+        texts: &[&str],
+    ) -> Result<(), Error> {
+        const CALL: &str = "set";
+        self.check_texts(CALL, references, texts.len())?;
+        if !references.is_empty() {
+            lifecycle::check(Call::SetFixed, self.mode())?;
+        }
+        for (reference, text) in references.iter().zip(texts) {
+            match self.table.source(*reference) {
+                Some(Source::LogPath) => self.host.log_path = (*text).to_owned(),
+                Some(Source::ZenohConfig) => self.host.zenoh_config = (*text).to_owned(),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads texts.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`]: unknown reference, a variable that is no text.
+    pub fn texts(&self, references: &[ValueReference]) -> Result<Vec<&str>, Error> {
+        self.check_texts("get", references, references.len())?;
+        let text = |reference: &ValueReference| match self.table.source(*reference) {
+            Some(Source::LogPath) => self.host.log_path.as_str(),
+            Some(Source::ZenohConfig) => self.host.zenoh_config.as_str(),
+            _ => "",
+        };
+        Ok(references.iter().map(text).collect())
+    }
+
+    fn check_texts(
+        &self,
+        call: &'static str,
+        references: &[ValueReference],
+        found: usize,
+    ) -> Result<(), Error> {
+        for row in self.rows(call, references)? {
+            if row.kind != ValueKind::Text {
+                return Err(bad(call, &row.name, "a number", "variables that are texts"));
+            }
+        }
+        if references.len() == found {
+            return Ok(());
+        }
+        Err(bad(
+            call,
+            "number of texts",
+            &found.to_string(),
+            &format!("{}, one each reference", references.len()),
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn silo() -> Component {
+        let text = include_str!("../../tests/scenes/small_silo.toml");
+        let scene = crate::scene::parse("small_silo.toml", text).unwrap();
+        Component::new(&scene).unwrap()
+    }
+
+    #[test]
+    fn the_hosts_parameters_change_no_state_and_are_fixed_after_the_start() {
+        let (mut silo, plain) = (silo(), silo());
+        let reference = |name: &str| plain.variables().by_name(name).unwrap().reference;
+        let [path, zenoh, required] = ["log.path", "zenoh.config", "log.required"].map(reference);
+        assert_eq!(silo.texts(&[path, zenoh]).unwrap(), ["", ""]);
+        silo.set_texts(&[path, zenoh], &["a.mcap", "{}"]).unwrap();
+        silo.set(&[required], &[0.0]).unwrap();
+        assert_eq!(silo.texts(&[zenoh, path]).unwrap(), ["{}", "a.mcap"]);
+        assert!(!silo.host_settings().log_required);
+        assert_eq!(silo.save().unwrap(), plain.save().unwrap());
+        // A state does not bring other settings along.
+        silo.restore(&plain.save().unwrap()).unwrap();
+        assert_eq!(silo.host_settings().log_path, "a.mcap");
+
+        for refused in [
+            silo.set_texts(&[path, required], &["b", "c"]),
+            silo.set_texts(&[path, 9999], &["b", "c"]),
+            silo.set_texts(&[path], &["b", "c"]),
+            silo.set(&[path], &[1.0]),
+            silo.get(&[path], &mut [0.0]),
+        ] {
+            let message = refused.unwrap_err().to_string();
+            assert!(
+                message.contains("found") && message.contains("allowed"),
+                "{message}"
+            );
+        }
+        assert_eq!(silo.texts(&[path]).unwrap(), ["a.mcap"]);
+        silo.initialize(0.0, None).unwrap();
+        let late = silo.set_texts(&[path], &["b.mcap"]).unwrap_err();
+        assert!(matches!(late, Error::NotAllowedNow { .. }));
+        silo.reset().unwrap();
+        assert_eq!(silo.host_settings(), plain.host_settings());
+    }
+}

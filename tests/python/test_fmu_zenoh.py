@@ -1,0 +1,251 @@
+"""FMUs that publish on Zenoh and take set-points while FMPy steps them; the client is Python's own Zenoh.
+
+Run by tests/it/fmu.rs, which packs the FMUs with the library that has Zenoh.
+
+SANDGATE_PROGRAM  the program
+SANDGATE_PLAIN    the FMU without Zenoh
+"""
+
+import ctypes
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+sys.path.insert(0, os.path.dirname(__file__))
+sys.path.insert(0, str(pathlib.Path(os.environ["SANDGATE_ROOT"]) / "examples"))
+
+import zenoh
+from bus_client import Component, Refused, open_session
+from fmpy.fmi1 import FMICallException
+
+from importer import Fmu, Library
+from scheduled import FMUS, H, LIBRARY, PATH, run, through_the_c_interface
+
+PROGRAM = os.environ["SANDGATE_PROGRAM"]
+GATE, RATE = "gate.sluice.opening", "inflow.feed.rate"
+BASE = "sandgate/v1/instance"
+both = pytest.mark.parametrize("version", [2, 3])
+
+
+def until(condition, seconds=20.0):
+    """Waits for what must become true; polls, so that a slow machine only takes longer."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+
+
+class Published:
+    """An initialised FMU on Zenoh, and a client."""
+
+    def __init__(self, version, config="{}", **start_values):
+        self.fmu = Fmu(FMUS[version]).initialize(zenoh__config=config, **start_values)
+        told = [m for _, category, m in self.fmu.messages if category == "logEvents" and "listening on" in m]
+        name, self.endpoint = re.fullmatch(r"publishing sandgate/v1/(\S+), listening on (\S+)", told[-1]).groups()
+        self.session = open_session(self.endpoint)
+        self.client = Component(self.session, name, client="pytest")
+
+    def point(self, name, value):
+        """A set-point that has arrived when this returns: nothing tells so but the reply to a later request."""
+        self.session.put(f"{self.client.base}/in/{name}", json.dumps({"value": value, "client": "plc"}))
+        self.client.ask("status")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.session.close()
+        self.fmu.free()
+
+
+@both
+def test_a_client_watches_an_fmu_that_fmpy_steps(version):
+    with Published(version) as p:
+        assert p.endpoint.startswith("tcp/127.0.0.1:")
+        classes = p.client.message_classes()
+        arrived, lock = [], threading.Lock()
+
+        def keep(sample):
+            with lock:
+                arrived.append((str(sample.key_expr).removeprefix(p.client.base + "/"), sample.payload.to_bytes()))
+
+        subscriber = p.session.declare_subscriber(f"{p.client.base}/out/**", keep)
+        tokens = list(p.session.liveliness().get(f"{p.client.base}/@alive"))
+        assert len(tokens) == 1
+        p.client.ask("status")
+        steps = 4
+        run(p.fmu, last=steps)
+        last = {"gauge.past_gate.discharge", "gate.sluice.actual_opening", "mass.present"}
+        expected = dict(zip(sorted(last), p.fmu.get(sorted(last))))
+
+        def seen(name):
+            kind, rest = name.split(".", 1)
+            with lock:
+                return [classes["sandgate.Gauge"].FromString(data) for key, data in arrived if key == f"out/{kind}/{rest}"]
+
+        until(lambda: all(len(seen(name)) == steps for name in last))
+        for name in last:
+            assert [g.step for g in seen(name)] == [1, 2, 3, 4] and seen(name)[-1].values[0] == expected[name]
+            assert seen(name)[-1].time == steps * H
+        # Somebody subscribes to particles, too: they are built.
+        with lock:
+            assert any(key == "out/particles" for key, _ in arrived) and any(key == "out/applied" for key, _ in arrived)
+        status = p.client.ask("status")
+        assert (status["step"], status["t_ns"], status["mode"]) == (steps, round(steps * H * 1e9), "stepping")
+        assert p.client.ask("get", outputs=sorted(last))["outputs"] == expected
+        names = {v["name"] for v in p.client.ask("describe")["variables"]}
+        assert GATE in names and "log.path" not in names
+        # Time has an owner already.
+        for verb, fields in (("step", {}), ("reset", {}), ("restore", {"state": "AAAA"}), ("set", {"inputs": {GATE: 1.0}}),
+                             ("run", {}), ("save", {}), ("terminate", {})):
+            with pytest.raises(Refused) as refused:
+                p.client.ask(verb, **fields)
+            assert refused.value.reply["code"] == "not_owner"
+        with pytest.raises(Refused) as refused:
+            p.client.ask("get", outputs=["nothing"])
+        assert refused.value.reply["code"] == "unknown_variable"
+        subscriber.undeclare()
+
+
+@both
+def test_publishing_changes_no_bit(version):
+    with Published(version) as p:
+        assert run(p.fmu, last=8) == through_the_c_interface()[:8]
+
+
+@both
+def test_set_points_hold_from_the_next_step_but_the_importer_wins(version, tmp_path):
+    path = tmp_path / "run.mcap"
+    with Published(version, log__path=str(path)) as p:
+        fmu = p.fmu
+        p.point(GATE, 0.5)
+        assert fmu.get([GATE]) == [0.0]
+        fmu.step(0.0, H)
+        assert fmu.get([GATE]) == [0.5]
+        # Back and forth again: it still holds.
+        state = fmu.get_state()
+        p.point(RATE, 0.25)
+        for _ in range(2):
+            fmu.step(H, H)
+            assert fmu.get([GATE, RATE]) == [0.5, 0.25]
+            fmu.set_state(state)
+            assert fmu.get([RATE]) != [0.25]
+        fmu.free_state(state)
+        # The importer sets it: one that came in the same time is refused, the earlier one holds no longer.
+        p.point(GATE, 0.75)
+        fmu.set(GATE, 0.125)
+        before = p.client.ask("status")["refused_set_points"]
+        fmu.step(H, H)
+        assert fmu.get([GATE, RATE]) == [0.125, 0.25]
+        assert p.client.ask("status")["refused_set_points"] == before + 1
+        fmu.step(2 * H, H)
+        assert fmu.get([GATE]) == [0.125]
+        # A later one counts again; what is out of range does not.
+        p.point(GATE, 1.0)
+        p.point(GATE, 7.0)
+        p.point("solver.resolution_scale", 2.0)
+        fmu.step(3 * H, H)
+        assert fmu.get([GATE]) == [1.0]
+        assert p.client.ask("status")["refused_set_points"] == before + 3
+    done = subprocess.run([PROGRAM, "log", "redrive", path, "--check"], capture_output=True, text=True)
+    assert done.returncode == 0 and "same bits: 6 steps" in done.stdout, done.stdout + done.stderr
+    said = subprocess.run([PROGRAM, "log", "cat", path, "--topic", "out/*", "--json"], capture_output=True, text=True).stdout
+    assert '"plc"' in said and "its owner sets it" in said
+
+
+@both
+def test_clamped_set_points_are_told(version):
+    with Published(version, saturate_inputs=True) as p:
+        heard = []
+        subscriber = p.session.declare_subscriber(f"{p.client.base}/out/log", lambda s: heard.append(s.payload.to_bytes()))
+        p.client.ask("status")
+        p.point(GATE, 1.5)
+        p.fmu.step(0.0, H)
+        assert p.fmu.get([GATE]) == [1.0]
+        until(lambda: any(b"clamped to 1" in data for data in heard))
+        subscriber.undeclare()
+
+
+@both
+def test_bad_configurations_are_refused_and_can_be_corrected(version, tmp_path):
+    taken = Published(version)
+    fmu = Fmu(FMUS[version])
+    unreachable = tmp_path / "none.json5"
+    open_one = "listen: {endpoints: ['tcp/0.0.0.0:0']}"
+    cases = {
+        "{listen: 7}": "Zenoh configuration",
+        str(unreachable): "none.json5",
+        "{%s}" % open_one: "can be reached from other machines",
+        "{metadata: {sandgate: {instance: 'A b'}}}": "a-z 0-9",
+        "{metadata: {sandgate: {open: true}}}": "allow_open_listener",
+        "{listen: {endpoints: ['%s']}}" % taken.endpoint: "port in use",
+    }
+    fmu.fmu.enterInitializationMode()
+    for config, why in cases.items():
+        fmu.messages.clear()
+        fmu.set("zenoh.config", config)
+        with pytest.raises(FMICallException):
+            fmu.fmu.exitInitializationMode()
+        assert why in fmu.messages[-1][2] and "ExitInitializationMode: zenoh.config" in fmu.messages[-1][2], config
+    file = tmp_path / "zenoh.json5"
+    file.write_text("{%s, metadata: {sandgate: {instance: 'silo-7', allow_open_listener: true}}}" % open_one)
+    fmu.set("zenoh.config", str(file))
+    fmu.fmu.exitInitializationMode()
+    assert any(re.search("sandgate/v1/silo-7, listening on tcp/0.0.0.0:[1-9]", m) for _, _, m in fmu.messages)
+    fmu.free()
+    taken.__exit__()
+
+
+def open_things():
+    return len(os.listdir("/proc/self/task")), len(os.listdir("/proc/self/fd"))
+
+
+def test_instances_with_log_and_zenoh_leave_what_is_documented(tmp_path):
+    """Zenoh's own threads stay with the process, as many as after the first session, and no socket and no file."""
+    fmu = Fmu(FMUS[3], logging=False)
+    reference = {name: fmu.variables[name].valueReference for name in ("log.path", "zenoh.config")}
+    first = None
+    for k in range(100):
+        fmu.fmu.setString(list(reference.values()), [str(tmp_path / f"{k}.mcap"), "{}"])
+        fmu.initialize()
+        fmu.fmu.fmi3FreeInstance(fmu.fmu.component)
+        fmu.fmu.instantiate()
+        if k == 4:
+            first = open_things()
+    until(lambda: open_things() <= first)
+    assert len(os.listdir(tmp_path)) == 100
+    fmu.free()
+
+
+def test_the_c_library_publishes_alike():
+    library = Library(LIBRARY, PATH)
+    assert library.lib.sandgate_capabilities() & 64
+    told = []
+    kind = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p)
+    logger = kind(lambda _, category, message: told.append(message.decode()))
+    library.check(library.lib.sandgate_set_logger(library.handle, logger, None))
+    reference = ctypes.c_uint32(library.references["zenoh.config"])
+    library.check(library.lib.sandgate_set_text(library.handle, reference, b"{}"))
+    library.initialize()
+    endpoint = next(text.split()[-1] for text in told if "listening on" in text)
+    with open_session(endpoint) as session:
+        client = Component(session, "devices", client="pytest")
+        run(library, last=2)
+        assert client.ask("status")["step"] == 2
+    library.free()
+
+
+def test_an_fmu_without_zenoh_says_how_to_get_it():
+    fmu = Fmu(os.environ["SANDGATE_PLAIN"])
+    with pytest.raises(FMICallException):
+        fmu.set("zenoh.config", "{}")
+    assert "sandgate fmu --zenoh" in fmu.messages[-1][2]
+    fmu.set("zenoh.config", "")
+    fmu.free()
