@@ -7,11 +7,18 @@ use std::net::{IpAddr, SocketAddr, TcpListener};
 /// Where a server listens unless it is told otherwise: this machine only, a free port.
 pub const DEFAULT_LISTEN: &str = "tcp/127.0.0.1:0";
 
+/// Transports of this build.
+const PROTOCOLS: &[&str] = if cfg!(feature = "tls") {
+    &["tcp", "tls"]
+} else {
+    &["tcp"]
+};
+
 /// An endpoint that will not be listened on.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BadEndpoint {
     /// Not of the form that this build can open.
-    #[error("endpoint {found:?}: allowed is tcp/HOST:PORT (this build has no other transport)")]
+    #[error("endpoint {found:?}: allowed is {}/HOST:PORT (this build has no other transport)", PROTOCOLS.join("/HOST:PORT or "))]
     Form {
         /// The endpoint.
         found: String,
@@ -40,7 +47,7 @@ pub enum BadEndpoint {
 /// # Errors
 /// [`BadEndpoint::Form`]; [`BadEndpoint::Open`] for hosts other than loopback unless `open` is allowed.
 pub(super) fn check_listener(endpoint: &str, open: bool) -> Result<(), BadEndpoint> {
-    let (host, _) = split(endpoint)?;
+    let (_, host, _) = split(endpoint)?;
     if open || is_loopback(host) {
         Ok(())
     } else {
@@ -56,7 +63,7 @@ pub(super) fn check_listener(endpoint: &str, open: bool) -> Result<(), BadEndpoi
 /// # Errors
 /// [`BadEndpoint::Form`], [`BadEndpoint::NoPort`].
 pub(super) fn with_real_port(endpoint: &str) -> Result<String, BadEndpoint> {
-    let (host, port) = split(endpoint)?;
+    let (protocol, host, port) = split(endpoint)?;
     if port != 0 {
         return Ok(endpoint.to_owned());
     }
@@ -68,7 +75,10 @@ pub(super) fn with_real_port(endpoint: &str) -> Result<String, BadEndpoint> {
             reason: error.to_string(),
         })?;
     let tail = endpoint.find(['?', '#']).map_or("", |at| &endpoint[at..]);
-    Ok(format!("tcp/{host}:{}{tail}", SocketAddr::port(&free)))
+    Ok(format!(
+        "{protocol}/{host}:{}{tail}",
+        SocketAddr::port(&free)
+    ))
 }
 
 /// Every endpoint in a value of Zenoh's configuration: a list, or lists by mode.
@@ -82,16 +92,19 @@ pub(super) fn listed(value: &Value) -> Vec<String> {
     }
 }
 
-/// Host and port of `tcp/HOST:PORT`, without what follows ? or #.
-fn split(endpoint: &str) -> Result<(&str, u16), BadEndpoint> {
-    let address = endpoint.strip_prefix("tcp/").map(|rest| {
-        let end = rest.find(['?', '#']).unwrap_or(rest.len());
-        &rest[..end]
-    });
+/// Protocol, host and port of `tcp/HOST:PORT`, without what follows ? or #.
+fn split(endpoint: &str) -> Result<(&str, &str, u16), BadEndpoint> {
+    let address = endpoint
+        .split_once('/')
+        .filter(|(protocol, _)| PROTOCOLS.contains(protocol))
+        .map(|(protocol, rest)| {
+            let end = rest.find(['?', '#']).unwrap_or(rest.len());
+            (protocol, &rest[..end])
+        });
     address
-        .and_then(|address| address.rsplit_once(':'))
-        .filter(|(host, _)| !host.is_empty())
-        .and_then(|(host, port)| Some((host, port.parse().ok()?)))
+        .and_then(|(protocol, address)| Some((protocol, address.rsplit_once(':')?)))
+        .filter(|(_, (host, _))| !host.is_empty())
+        .and_then(|(protocol, (host, port))| Some((protocol, host, port.parse().ok()?)))
         .ok_or_else(|| BadEndpoint::Form {
             found: endpoint.to_owned(),
         })
@@ -148,7 +161,7 @@ mod tests {
     #[test]
     fn port_zero_becomes_a_port_that_can_be_bound() {
         let real = with_real_port("tcp/127.0.0.1:0#so_sndbuf=65000").unwrap();
-        let (host, port) = split(&real).unwrap();
+        let (_, host, port) = split(&real).unwrap();
         assert!(real.ends_with("#so_sndbuf=65000") && port != 0, "{real}");
         assert!(TcpListener::bind((host, port)).is_ok());
         assert_eq!(

@@ -37,7 +37,7 @@ pub(super) trait Asked: Send {
 pub(super) enum Task {
     /// A request, with its body as it came.
     Call {
-        request: Request,
+        request: Box<Request>,
         body: String,
         asked: Box<dyn Asked>,
     },

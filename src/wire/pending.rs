@@ -119,7 +119,7 @@ fn applied_inputs(
 ) -> impl Iterator<Item = AppliedInput> {
     let mut rest = values;
     // References were accepted by the component, so that all are known.
-    let rows = references.iter().filter_map(move |&reference| {
+    references.iter().filter_map(move |&reference| {
         let variable = component.variables().by_reference(reference)?;
         let (own, others) = rest.split_at(variable.len().min(rest.len()));
         rest = others;
@@ -131,6 +131,5 @@ fn applied_inputs(
             source: source.to_owned(),
             slope: false,
         })
-    });
-    rows
+    })
 }

@@ -481,6 +481,89 @@ impl Observer for Listener {
 }
 
 #[test]
+fn a_reset_sets_fixed_parameters_all_or_none() {
+    let mut bench = Bench::new();
+    let particles = bench.ok("get", r#"{"outputs":["solver.particles"]}"#)["outputs"].clone();
+    bench.ok("step", r#"{"req":"1","inputs":{"gate.main.opening":1}}"#);
+    let before = bench.hash();
+    bench.refused(
+        "set",
+        r#"{"req":"2","inputs":{"solver.resolution_scale":1.25}}"#,
+        "state",
+        "fixed parameter",
+    );
+    for (req, inputs) in [
+        ("3", r#"{"solver.resolution_scale":-1}"#),
+        (
+            "4",
+            r#"{"gate.main.opening":0.5,"solver.resolution_scale":1e9}"#,
+        ),
+    ] {
+        let body = format!(r#"{{"req":"{req}","inputs":{inputs}}}"#);
+        bench.refused("reset", &body, "range", "solver.resolution_scale");
+        assert_eq!(bench.hash(), before);
+    }
+    let mut listener = Listener::default();
+    let body = r#"{"req":"5","client":"b","inputs":{"solver.resolution_scale":1.25,"gate.main.opening":0.5}}"#;
+    let request = Request::parse(Verb::Reset, body.as_bytes()).unwrap();
+    assert!(bench.handle(&request, &mut listener).error.is_none());
+    assert_eq!(
+        listener.heard,
+        ["Reset b", "input [1.25, 0.5] b", "initialize 0 b"]
+    );
+    let now = bench.ok("get", r#"{"outputs":["solver.particles"]}"#)["outputs"].clone();
+    assert!(now["solver.particles"].as_f64() > particles["solver.particles"].as_f64());
+    // The next one goes back to the scene's own.
+    bench.ok("reset", r#"{"req":"6"}"#);
+    assert_eq!(
+        bench.ok("get", r#"{"outputs":["solver.particles"]}"#)["outputs"],
+        particles
+    );
+}
+
+#[test]
+fn clamped_inputs_and_lines_of_clients_are_heard() {
+    let mut bench = Bench::new();
+    let mut listener = Listener::default();
+    let mut send = |verb: Verb, body: &str| {
+        let request = Request::parse(verb, body.as_bytes()).unwrap();
+        assert_eq!(bench.handle(&request, &mut listener).error, None, "{body}");
+    };
+    send(
+        Verb::Set,
+        r#"{"req":"1","inputs":{"saturate_inputs":true}}"#,
+    );
+    send(
+        Verb::Set,
+        r#"{"req":"2","client":"a","inputs":{"gate.main.opening":1.5}}"#,
+    );
+    send(
+        Verb::Log,
+        r#"{"req":"3","client":"a","message":"hatch opened by hand","level":"error"}"#,
+    );
+    send(Verb::Log, r#"{"req":"4","message":"closed again"}"#);
+    assert_eq!(
+        listener.heard,
+        [
+            "input [1.0] rpc",
+            "input [1.5] a",
+            "Warning",
+            "Error",
+            "Info"
+        ]
+    );
+    bench.refused("log", r#"{"req":"5"}"#, "bad_request", "message");
+    bench.refused("log", r#"{"message":"x"}"#, "bad_request", "req");
+    bench.refused("log", r#"{"req":"6","message":7}"#, "type", "message");
+    bench.refused(
+        "log",
+        r#"{"req":"7","message":"x","level":"loud"}"#,
+        "type",
+        "info, warning or error",
+    );
+}
+
+#[test]
 fn an_observer_hears_what_happens_in_its_order() {
     let mut bench = Bench::new();
     let mut listener = Listener::default();

@@ -482,6 +482,53 @@ def test_a_listener_for_everybody_must_be_meant():
         assert server.endpoint.startswith("tcp/0.0.0.0:")
 
 
+def documented(kind):
+    """The configuration that docs/security.md gives under a heading."""
+    page = (ROOT / "docs/security.md").read_text()
+    return page.split(f"## {kind}\n")[1].split("```json5\n")[1].split("```")[0]
+
+
+def session_of(endpoint, user=None, password=None):
+    config = zenoh.Config()
+    config.insert_json5("mode", json.dumps("client"))
+    config.insert_json5("connect", json.dumps({"endpoints": [endpoint], "timeout_ms": 2000, "exit_on_failure": True}))
+    config.insert_json5("scouting/multicast/enabled", "false")
+    if user:
+        config.insert_json5("transport/auth/usrpwd/user", json.dumps(user))
+        config.insert_json5("transport/auth/usrpwd/password", json.dumps(password))
+    return zenoh.open(config)
+
+
+def test_only_users_with_their_password_get_in_and_do_what_the_list_allows(tmp_path):
+    """As docs/security.md has it: users and passwords, and access lists by user."""
+    users = tmp_path / "users"
+    users.write_text("plc:secret\nguest:guest\n")
+    password = documented("User and password").replace("/etc/sandgate/users", str(users)).replace(":7447", ":0")
+    access = documented("Access lists")
+    config = tmp_path / "zenoh.json5"
+    config.write_text(password.rstrip().removesuffix("}") + access.lstrip().removeprefix("{"))
+    server = Server("--zenoh-config", str(config))
+    try:
+        for user, secret in ((None, None), ("plc", "wrong"), ("nobody", "secret")):
+            with pytest.raises(zenoh.ZError):
+                session_of(server.endpoint, user, secret)
+        with session_of(server.endpoint, "plc", "secret") as plc, session_of(server.endpoint, "guest", "guest") as guest:
+            assert Component(guest, "small_silo").ask("status")["step"] == 0
+            # Not in the list: nobody answers.
+            for session in (plc, guest):
+                with pytest.raises(TimeoutError):
+                    Component(session, "small_silo").ask("step", timeout=1.0)
+            # A set-point that is refused for its value is counted: the guest's does not even arrive.
+            counted = lambda: Component(plc, "small_silo").ask("status")["refused_set_points"]
+            guest.put(f"{BASE}/in/{GATE}", "7")
+            Component(guest, "small_silo").ask("status")
+            plc.put(f"{BASE}/in/{GATE}", "8")
+            until(lambda: counted() == 1)
+            assert Component(guest, "small_silo").ask("status")["refused_set_points"] == 1
+    finally:
+        server.end()
+
+
 def test_a_name_is_served_once():
     with served() as (server, _, _):
         command = [os.environ["SANDGATE"], "serve", str(SCENE), "--connect", server.endpoint]
@@ -571,6 +618,7 @@ def test_a_full_disk_ends_the_log_and_the_component_only_if_it_must(tmp_path, sm
                 if required:
                     process.wait(timeout=60)
                 else:
+                    until(lambda: "log stopped at simulated time" in (silo.ask("status")["log_failure"] or ""))
                     # It goes on without its log.
                     for more in range(1, 50):
                         assert silo.ask("step", dt_ns=200_000)["step"] == steps + more

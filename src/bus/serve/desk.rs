@@ -170,7 +170,7 @@ impl Desk {
         }
         let [.., body] = names.clone();
         let task = Task::Call {
-            request,
+            request: Box::new(request),
             body,
             asked: Box::new(waiting),
         };

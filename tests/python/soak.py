@@ -1,0 +1,109 @@
+"""A served silo for minutes or hours, with clients that come and go every few seconds: memory, threads and open files stay.
+
+Run by hand, not by the tests (docs/zenoh.md has what a run gave):
+
+    cargo build --release
+    python tests/python/soak.py --minutes 60            # in an environment with tests/python/requirements.txt
+
+A client connects, watches everything, sends set-points and requests, and leaves: by closing its session, or (every third
+one) killed. Every client has a process of its own, as clients have. One in ten resets the component, which begins a new log
+file. Every ten seconds a line: time, resident memory, threads, open files, communication steps, publications that were dropped.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "examples"))
+SCENE = ROOT / "tests/scenes/small_silo.toml"
+GATE = "gate.main.opening"
+
+
+def client(endpoint, seed):
+    """One client's life, until it ends or is killed."""
+    from bus_client import Component, open_session
+
+    lots = random.Random(seed)
+    with open_session(endpoint) as session:
+        silo = Component(session, "small_silo", client=f"soak-{seed}")
+        seen = []
+        session.declare_subscriber(f"{silo.base}/out/**", lambda sample: seen.append(len(sample.payload.to_bytes())))
+        if seed % 10 == 0:
+            silo.ask("reset")
+            silo.ask("run", realtime_factor=1.0)
+        for _ in range(lots.randrange(5, 20)):
+            session.put(f"{silo.base}/in/{GATE}", json.dumps(lots.random()))
+            silo.ask(lots.choice(["status", "get", "describe"]))
+            time.sleep(0.1 * lots.random())
+        assert seen, "nothing was published"
+
+
+def figures(process):
+    """Resident memory [kB], threads, open files."""
+    status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+    field = lambda name: int(next(line for line in status.splitlines() if line.startswith(name)).split()[1])
+    return field("VmRSS"), field("Threads"), len(os.listdir(f"/proc/{process.pid}/fd"))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--minutes", type=float, default=10.0)
+    parser.add_argument("--program", default=str(ROOT / "target/release/sandgate"))
+    arguments = parser.parse_args()
+    from bus_client import Component, open_session
+
+    with tempfile.TemporaryDirectory() as folder:
+        command = [arguments.program, "serve", str(SCENE), "--threads", "1", "--realtime-factor", "1",
+                   "--log", os.path.join(folder, "soak.mcap")]
+        server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        endpoint = next(line for line in server.stdout if line.startswith("listening on ")).split()[-1]
+        begin, told, seed, failed, killed, rows = time.monotonic(), 0.0, 0, 0, 0, []
+        while time.monotonic() - begin < 60.0 * arguments.minutes and server.poll() is None:
+            seed += 1
+            child = subprocess.Popen([sys.executable, __file__, "client", endpoint, str(seed)])
+            if seed % 3 == 0:
+                time.sleep(1.0 + 0.1 * (seed % 7))
+                child.send_signal(signal.SIGKILL)
+                child.wait()
+                killed += 1
+            else:
+                failed += child.wait() != 0
+            now = time.monotonic() - begin
+            if now - told >= 10.0:
+                told = now
+                with open_session(endpoint) as session:
+                    status = Component(session, "small_silo").ask("status")
+                # Sessions of clients that were killed end when their connection is found closed.
+                time.sleep(0.5)
+                rows.append((now, *figures(server), status["step"], status["dropped_publications"]))
+                print("{:8.0f} s  {:8d} kB  {:3d} threads  {:3d} files  step {:6d}  dropped {}".format(*rows[-1]), flush=True)
+        server.send_signal(signal.SIGINT)
+        server.communicate(timeout=60)
+        logs = sorted(pathlib.Path(folder).iterdir())
+        # The files that begin with a reset; those with particles of a minute each run again in seconds.
+        checked = subprocess.run([arguments.program, "log", "redrive", "--check", *map(str, logs[:3])], capture_output=True, text=True)
+    # Let allocator and caches settle for the first fifth.
+    settled = rows[len(rows) // 5:]
+    half = len(settled) // 2
+    early, late = (max(row[1] for row in part) for part in (settled[:half], settled[half:]))
+    threads, files = ({row[k] for row in settled} for k in (2, 3))
+    print(f"{len(rows)} samples, {seed} clients ({killed} killed, {failed} failed), {len(logs)} log files, exit code {server.returncode}")
+    print(f"memory: at most {early} kB in the first half, {late} kB in the second; threads {threads}; open files {files}")
+    print(checked.stdout + checked.stderr, end="")
+    grown = late > 1.1 * early
+    sys.exit(1 if failed or grown or server.returncode != 0 or checked.returncode != 0 or len(threads) > 2 or len(files) > 2 else 0)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["client"]:
+        client(sys.argv[2], int(sys.argv[3]))
+    else:
+        main()
