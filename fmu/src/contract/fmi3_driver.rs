@@ -162,7 +162,7 @@ impl Fmi3 {
                 self.outcome(unsafe { fmi3GetInt64(c, r, n, values.as_mut_ptr(), count) })?;
                 Ok(values.into_iter().map(|v| v as f64).collect())
             }
-            ValueKind::Text => return Err(Refusal::Inexpressible),
+            ValueKind::Text => Err(Refusal::Inexpressible),
             ValueKind::Boolean => {
                 let mut values = vec![false; count];
                 self.outcome(unsafe { fmi3GetBoolean(c, r, n, values.as_mut_ptr(), count) })?;
