@@ -32,7 +32,6 @@ impl Component {
                 Some(Source::Threads) if *value as usize == self.threads => {}
                 Some(Source::Threads) => self.set_threads(*value as usize),
                 Some(Source::SaturateInputs) => self.life.saturate_inputs = *value != 0.0,
-                Some(Source::LogRequired) => self.host.log_required = *value != 0.0,
                 Some(Source::Adjustable(i)) => {
                     if let Some(place) = self.life.parameters.get_mut(*i) {
                         *place = *value;
@@ -46,7 +45,7 @@ impl Component {
                         };
                     }
                 }
-                None => {}
+                None => self.set_for_host(*reference, *value),
             }
         }
         Ok(())
@@ -161,10 +160,10 @@ impl Component {
             Some(Source::Time) => values.fill(time),
             Some(Source::Threads) => values.fill(self.threads as f64),
             Some(Source::SaturateInputs) => values.fill(f64::from(self.life.saturate_inputs)),
-            Some(Source::LogRequired) => values.fill(f64::from(self.host.log_required)),
             Some(Source::Adjustable(i)) => values.fill(self.life.parameters[*i]),
             Some(Source::GateOpening(i)) => values.fill(inputs.gate_opening[*i].value),
             Some(Source::InflowRate(i)) => values.fill(inputs.inflow_rate[*i].value),
+            None => values.fill(self.number_for_host(row.reference)),
             _ => {
                 let offset = self.table.offset(row);
                 values.copy_from_slice(&outputs[offset..offset + values.len()]);

@@ -3,7 +3,8 @@
 
 use super::access::bad;
 use super::lifecycle::{self, Call};
-use super::variables::{Source, ValueKind, Variable, VariableTable};
+use super::variables::ValueKind;
+use super::variables::host::{LOG_PATH, LOG_REQUIRED, ZENOH_CONFIG};
 use super::{Component, Error, ValueReference};
 use crate::scene::Scene;
 
@@ -27,15 +28,6 @@ impl HostSettings {
             log_required: scene.log.required,
             zenoh_config: String::new(),
         }
-    }
-}
-
-impl VariableTable {
-    /// Whether a variable is for the host of a component ([`HostSettings`]) and not for the component.
-    #[must_use]
-    pub fn is_for_host(&self, row: &Variable) -> bool {
-        self.source(row.reference)
-            .is_some_and(|source| source.is_for_host())
     }
 }
 
@@ -67,9 +59,9 @@ impl Component {
             lifecycle::check(Call::SetFixed, self.mode())?;
         }
         for (reference, text) in references.iter().zip(texts) {
-            match self.table.source(*reference) {
-                Some(Source::LogPath) => self.host.log_path = (*text).to_owned(),
-                Some(Source::ZenohConfig) => self.host.zenoh_config = (*text).to_owned(),
+            match self.name_of(*reference) {
+                LOG_PATH => self.host.log_path = (*text).to_owned(),
+                ZENOH_CONFIG => self.host.zenoh_config = (*text).to_owned(),
                 _ => {}
             }
         }
@@ -82,12 +74,32 @@ impl Component {
     /// [`Error::BadArgument`]: unknown reference, a variable that is no text.
     pub fn texts(&self, references: &[ValueReference]) -> Result<Vec<&str>, Error> {
         self.check_texts("get", references, references.len())?;
-        let text = |reference: &ValueReference| match self.table.source(*reference) {
-            Some(Source::LogPath) => self.host.log_path.as_str(),
-            Some(Source::ZenohConfig) => self.host.zenoh_config.as_str(),
+        let text = |reference: &ValueReference| match self.name_of(*reference) {
+            LOG_PATH => self.host.log_path.as_str(),
+            ZENOH_CONFIG => self.host.zenoh_config.as_str(),
             _ => "",
         };
         Ok(references.iter().map(text).collect())
+    }
+
+    /// Takes a number that is for the host; others are not looked at.
+    pub(super) fn set_for_host(&mut self, reference: ValueReference, value: f64) {
+        if self.name_of(reference) == LOG_REQUIRED {
+            self.host.log_required = value != 0.0;
+        }
+    }
+
+    /// The number of a row for the host.
+    pub(super) fn number_for_host(&self, reference: ValueReference) -> f64 {
+        match self.name_of(reference) {
+            LOG_REQUIRED => f64::from(self.host.log_required),
+            _ => 0.0,
+        }
+    }
+
+    fn name_of(&self, reference: ValueReference) -> &str {
+        let row = self.table.by_reference(reference);
+        row.map_or("", |row| row.name.as_str())
     }
 
     fn check_texts(
@@ -121,6 +133,17 @@ mod tests {
         let text = include_str!("../../tests/scenes/small_silo.toml");
         let scene = crate::scene::parse("small_silo.toml", text).unwrap();
         Component::new(&scene).unwrap()
+    }
+
+    #[test]
+    fn the_checksum_of_a_state_is_that_of_all_its_other_bytes() {
+        use sha2::{Digest, Sha256};
+
+        let state = silo().save().unwrap();
+        let sum = super::super::saved_checksum(&state).unwrap();
+        let others = [&state[..52], &state[84..]].concat();
+        assert_eq!(sum, <[u8; 32]>::from(Sha256::digest(others)));
+        assert_eq!(super::super::saved_checksum(&state[..83]), None);
     }
 
     #[test]

@@ -31,7 +31,6 @@ pub use error::{Error, Severity};
 pub use host::HostSettings;
 pub use points::next_point;
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport};
-pub use snapshot::saved_checksum;
 pub use status::Status;
 pub use variables::{
     Causality, Start, ValueKind, ValueReference, Variability, Variable, VariableTable,
@@ -57,6 +56,14 @@ pub enum Mode {
     Terminated,
     /// A step failed: only get, restore, reset, terminate.
     Failed,
+}
+
+/// The checksum within saved bytes (SHA-256, where `snapshot` puts it; a test looks): states with the same one are the
+/// same. None if the bytes are too short.
+#[must_use]
+pub fn saved_checksum(bytes: &[u8]) -> Option<[u8; 32]> {
+    const AT: usize = 52;
+    bytes.get(AT..AT + 32)?.try_into().ok()
 }
 
 /// A steppable granular-flow unit.

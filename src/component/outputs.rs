@@ -54,7 +54,7 @@ pub(super) fn sample(
     };
     let mut values = Vec::new();
     for (row, source) in table.with_sources() {
-        if row.element_of.is_some() || source.is_for_host() {
+        if row.element_of.is_some() {
             continue;
         }
         for k in 0..row.len() {
@@ -82,10 +82,7 @@ impl Moment<'_> {
             | Source::SaturateInputs
             | Source::Adjustable(_)
             | Source::GateOpening(_)
-            | Source::InflowRate(_)
-            | Source::LogPath
-            | Source::LogRequired
-            | Source::ZenohConfig => 0.0,
+            | Source::InflowRate(_) => 0.0,
             Source::GateActualOpening(i) => self.devices.gates[i].opening,
             Source::GateBlocked(i) => flag(self.devices.gates[i].blocked),
             Source::InflowActualRate(i) => {

@@ -56,12 +56,6 @@ pub(super) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     Ok(value)
 }
 
-/// The checksum within saved bytes: states with the same one are the same. None if the bytes are too short.
-#[must_use]
-pub fn saved_checksum(bytes: &[u8]) -> Option<[u8; 32]> {
-    bytes.get(PREFIX..HEADER)?.try_into().ok()
-}
-
 /// A value and raw bytes behind it as one payload.
 ///
 /// # Errors

@@ -3,6 +3,7 @@
 //! Here: what a row is. `rows` holds the list itself, `document` writes docs/variables.md from it.
 
 mod document;
+pub(super) mod host;
 mod rows;
 
 pub use document::variables_markdown;
@@ -110,7 +111,7 @@ impl Variable {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VariableTable {
     rows: Vec<Variable>,
-    /// Where the value of each row comes from, in the same order.
+    /// Where the value of each row comes from, in the same order; rows for the host have none.
     sources: Vec<Source>,
     /// First flat value of each row; elements point into their array's values.
     offsets: Vec<usize>,
@@ -120,7 +121,19 @@ impl VariableTable {
     /// The table of a scene's component.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
-        rows::list(scene)
+        let mut table = rows::list(scene);
+        // Behind all others: they have no source and no place among the flat values.
+        for mut row in host::rows(scene) {
+            row.reference = table.rows.len() as ValueReference;
+            table.rows.push(row);
+        }
+        table
+    }
+
+    /// Whether a variable is for the host of a component ([`super::HostSettings`]) and not for the component itself.
+    #[must_use]
+    pub fn is_for_host(&self, row: &Variable) -> bool {
+        row.reference as usize >= self.sources.len()
     }
 
     /// Where a row's value comes from.
@@ -133,7 +146,7 @@ impl VariableTable {
         self.offsets[row.reference as usize]
     }
 
-    /// Rows with their sources.
+    /// Rows with their sources; those for the host are left out.
     pub(super) fn with_sources(&self) -> impl Iterator<Item = (&Variable, &Source)> {
         self.rows.iter().zip(&self.sources)
     }

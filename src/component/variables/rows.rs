@@ -1,7 +1,7 @@
 //! The list: which variables each kind of device and gauge brings, with units, ranges and words.
 //!
 //! To add a variable: one row here, its [`Source`], and the value in `component::outputs`. References count from
-//! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals, what is for the host.
+//! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals.
 
 use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable};
 use crate::scene::{Adjustable, Gate, Gauge, GaugeKind, Inflow, Outflow, Scene};
@@ -44,17 +44,6 @@ pub(in crate::component) enum Source {
     ShareDilute,
     ShareIllPosed,
     CreepRate,
-    /// For the host; see `component::host`.
-    LogPath,
-    LogRequired,
-    ZenohConfig,
-}
-
-impl Source {
-    /// Whether the component itself does nothing with it: such rows have no place among the flat values.
-    pub(in crate::component) fn is_for_host(self) -> bool {
-        matches!(self, Self::LogPath | Self::LogRequired | Self::ZenohConfig)
-    }
 }
 
 /// A row before it has its number.
@@ -146,7 +135,6 @@ pub(super) fn list(scene: &Scene) -> VariableTable {
         gauge_rows(scene, i, gauge).into_iter().for_each(&mut add);
     }
     totals().for_each(&mut add);
-    for_host(scene).for_each(&mut add);
     number_elements(&mut table);
     table
 }
@@ -436,46 +424,10 @@ fn totals() -> impl Iterator<Item = Row> {
     .into_iter()
 }
 
-/// What the host is asked to do; fixed once the component is initialised.
-fn for_host(scene: &Scene) -> impl Iterator<Item = Row> {
-    let text = |name: &str, source, text: &str| {
-        let mut row = Row::output(name, "", source, text).kind(ValueKind::Text);
-        row.variable.start = Start::Empty;
-        row
-    };
-    let mut required = Row::output(
-        "log.required",
-        "",
-        Source::LogRequired,
-        "whether a log that cannot be written is an error of the step; otherwise it is told once",
-    )
-    .kind(ValueKind::Boolean)
-    .within(0.0, 1.0);
-    required.variable.start = Start::Exact(vec![f64::from(scene.log.required)]);
-    let rows = [
-        text(
-            "log.path",
-            Source::LogPath,
-            "file of the MCAP log of all traffic, empty for none; never overwritten",
-        ),
-        required,
-        text(
-            "zenoh.config",
-            Source::ZenohConfig,
-            "Zenoh's configuration, a path or JSON5 such as {}, to publish on Zenoh; empty for no Zenoh",
-        ),
-    ];
-    rows.into_iter().map(|mut row| {
-        row.variable.causality = Causality::Parameter;
-        row.variable.variability = Variability::Fixed;
-        row
-    })
-}
-
 /// Elements follow their array: now that rows have numbers, point each at its array and give values their place.
 fn number_elements(table: &mut VariableTable) {
     let (mut array, mut end) = (0, 0);
-    for (row, source) in table.rows.iter_mut().zip(&table.sources) {
+    for row in &mut table.rows {
         match &mut row.element_of {
             Some((of, k)) => {
                 *of = array;
@@ -484,9 +436,7 @@ fn number_elements(table: &mut VariableTable) {
             None => {
                 array = row.reference;
                 table.offsets.push(end);
-                if !source.is_for_host() {
-                    end += row.len();
-                }
+                end += row.len();
             }
         }
     }
