@@ -4,6 +4,7 @@
 //! Both begin when initialisation ends and end with terminate, reset or free; they watch and never change a bit, but for
 //! set-points that come over Zenoh. What they hold is the business of `sandgate::record` and `sandgate::bus`.
 
+mod calls;
 #[cfg(feature = "bus")]
 mod network;
 #[cfg(not(feature = "bus"))]
@@ -13,16 +14,13 @@ mod network;
 use std::path::PathBuf;
 
 use sandgate::component::{
-    Causality, Component, HostSettings, Mode, Start, StepReport, ValueKind, VariableTable, Wish,
-    saved_checksum,
+    Causality, Component, HostSettings, Mode, Start, StepReport, ValueKind, Wish, saved_checksum,
 };
 use sandgate::fmi::{self, FmiVersion};
-use sandgate::record::{RecordError, RecordOptions, Recorder, number};
+use sandgate::record::{RecordError, RecordOptions, Recorder};
 pub(crate) use sandgate::wire::Moment;
-use sandgate::wire::foxglove::LogLevel;
-use sandgate::wire::messages::{AppliedEvent, Command, CommandKind};
-use sandgate::wire::{Observer, Unobserved, convert, keys};
-use serde_json::{Map, Value, json};
+use sandgate::wire::messages::AppliedEvent;
+use sandgate::wire::{Observer, Unobserved, keys};
 
 use crate::fault::Fault;
 use network::Network;
@@ -85,87 +83,6 @@ impl Journal {
             ))),
             _ => Ok(()),
         }
-    }
-
-    /// A call begins.
-    pub(crate) fn begin(&mut self, call: &'static str) {
-        self.call = call;
-        self.told = false;
-    }
-
-    /// It asks to step.
-    pub(crate) fn asks_step(&mut self, component: &Component, t: f64, h: f64) {
-        self.request(component, || json!({"t": number(t), "h": number(h)}));
-    }
-
-    /// It asks to set variables.
-    pub(crate) fn asks_set(&mut self, component: &Component, references: &[u32], values: &[f64]) {
-        self.request(component, || {
-            named(component.variables(), references, values)
-        });
-    }
-
-    /// It asks for what its name says.
-    pub(crate) fn asks(&mut self, component: &Component) {
-        self.request(component, || json!({}));
-    }
-
-    fn request(&mut self, component: &Component, body: impl FnOnce() -> Value) {
-        if self.log.is_some() {
-            self.told = true;
-            let body = body();
-            self.command(component, CommandKind::Request, body, "");
-        }
-    }
-
-    /// What became of it. Calls that only read are not in the log unless they were refused.
-    pub(crate) fn reply(&mut self, component: &Component, result: Result<(), &Fault>) {
-        if let Err(fault) = result {
-            let line = format!("{}: {fault}", self.call);
-            self.line(component, LogLevel::Error, &line);
-        }
-        if self.log.is_none() || (result.is_ok() && !self.told) {
-            return;
-        }
-        if !self.told {
-            self.command(component, CommandKind::Request, json!({}), "");
-        }
-        let (body, status) = match result {
-            Ok(()) => (json!({"ok": true, "time": number(component.time())}), "ok"),
-            Err(fault) => (
-                json!({"ok": false, "message": fault.to_string()}),
-                fault.code(),
-            ),
-        };
-        self.command(component, CommandKind::Reply, body, status);
-        self.told = false;
-    }
-
-    fn command(&mut self, component: &Component, kind: CommandKind, body: Value, status: &str) {
-        let Some(log) = &mut self.log else { return };
-        let time = component.time();
-        let command = Command {
-            timestamp: Some(convert::timestamp(time)),
-            time,
-            kind: kind as i32,
-            interface: self.interface.to_owned(),
-            verb: self.call.to_owned(),
-            request: String::new(),
-            client: String::new(),
-            body: body.to_string(),
-            status: status.to_owned(),
-        };
-        log.on_command(&command);
-    }
-
-    /// What was told to the importer as a warning.
-    pub(crate) fn warning(&mut self, component: &Component, text: &str) {
-        self.line(component, LogLevel::Warning, text);
-    }
-
-    /// A line for people.
-    fn line(&mut self, component: &Component, level: LogLevel, text: &str) {
-        self.each(|one, source| one.on_log(component.time(), level, source, text));
     }
 
     /// Initialisation is about to end: begins the log and opens the network, if there shall be any. Gives whether it did.
@@ -476,26 +393,6 @@ fn told(error: RecordError) -> Fault {
         )),
         other => Fault::Outside(format!("log.path: {other}")),
     }
-}
-
-/// Values by name, for requests.
-fn named(table: &VariableTable, references: &[u32], values: &[f64]) -> Value {
-    let mut rest = values;
-    let mut map = Map::new();
-    for reference in references {
-        let Some(row) = table.by_reference(*reference) else {
-            map.insert(format!("unknown reference {reference}"), Value::Null);
-            break;
-        };
-        let (own, others) = rest.split_at(row.len().min(rest.len()));
-        rest = others;
-        let value = match own {
-            [one] => number(*one),
-            several => several.iter().map(|v| number(*v)).collect(),
-        };
-        map.insert(row.name.clone(), value);
-    }
-    Value::Object(map)
 }
 
 /// A name that topics can have: lower case, anything but letters, digits, `_` and `-` replaced; empty if nothing is left.
