@@ -27,6 +27,8 @@ pub enum Quantity {
     Pressure,
     /// Compressibility [1/Pa].
     Compressibility,
+    /// Viscosity, or a consistency [Pa s, Pa s^n].
+    Viscosity,
     /// A number without dimension \[1\].
     Ratio,
 }
@@ -102,11 +104,12 @@ const COMPRESSIBILITY: &[Unit] = &[
     unit("MPa^-1", 1.0, 1e6),
     unit("bar^-1", 1.0, 1e5),
 ];
+const VISCOSITY: &[Unit] = &[unit("Pa s", 1.0, 1.0), unit("mPa s", 1.0, 1e3)];
 const RATIO: &[Unit] = &[unit("1", 1.0, 1.0), unit("%", 1.0, 1e2)];
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Quantity; 11] = [
+    pub const ALL: [Quantity; 12] = [
         Quantity::Length,
         Quantity::Time,
         Quantity::Angle,
@@ -117,6 +120,7 @@ impl Quantity {
         Quantity::Density,
         Quantity::Pressure,
         Quantity::Compressibility,
+        Quantity::Viscosity,
         Quantity::Ratio,
     ];
 
@@ -132,6 +136,7 @@ impl Quantity {
             Quantity::Density => DENSITY,
             Quantity::Pressure => PRESSURE,
             Quantity::Compressibility => COMPRESSIBILITY,
+            Quantity::Viscosity => VISCOSITY,
             Quantity::Ratio => RATIO,
         }
     }
@@ -150,6 +155,7 @@ impl Quantity {
             Quantity::Density => "density",
             Quantity::Pressure => "pressure",
             Quantity::Compressibility => "compressibility",
+            Quantity::Viscosity => "viscosity",
             Quantity::Ratio => "ratio",
         }
     }
@@ -179,6 +185,7 @@ impl Quantity {
             Quantity::Density => "2600 kg/m^3",
             Quantity::Pressure => "20 kPa",
             Quantity::Compressibility => "4e-5 Pa^-1",
+            Quantity::Viscosity => "1 mPa s",
             Quantity::Ratio => "40 %",
         }
     }
@@ -337,6 +344,7 @@ mod tests {
             ("2.6 g/cm^3", Quantity::Density, 2600.0),
             ("20 kPa", Quantity::Pressure, 20_000.0),
             ("4.1e-5 Pa^-1", Quantity::Compressibility, 4.1e-5),
+            ("1 mPa s", Quantity::Viscosity, 1e-3),
             ("40 %", Quantity::Ratio, 0.4),
         ];
         for (text, quantity, si) in cases {

@@ -8,6 +8,9 @@
 //!   tau = c + p tan phi                                (`simple_shear`: phi is the angle of a layer that slips along
 //!                                                       its bed, where the normal stresses are equal; angle of repose)
 //!
+//!   tau = (c cos phi + p sin phi) 2 sqrt 3/(3 - sin phi)  (`cone`: [B] eqs. 7 to 9, exact in triaxial compression; 20
+//!                                                       to 40 % too strong in plane strain)
+//!
 //! The associated match 3 tan phi/sqrt(9 + 12 tan^2 phi) is for material that dilates as it shears: not used here.
 
 use super::Friction;
@@ -19,6 +22,14 @@ pub enum AngleMatch {
     PlaneStrain,
     /// mu = tan phi, cohesion c: simple shear with equal normal stresses.
     SimpleShear,
+    /// mu = 2 sqrt 3 sin phi/(3 - sin phi), cohesion 2 sqrt 3 c cos phi/(3 - sin phi): the cone of Drucker and Prager
+    /// through Mohr and Coulomb's corners of triaxial compression ([B] eq. 8, and 9 corrected).
+    Cone,
+}
+
+/// 2 sqrt 3/(3 - sin phi) of the cone.
+fn cone(angle: f64) -> f64 {
+    2.0 * 3f64.sqrt() / (3.0 - angle.sin())
 }
 
 /// Constant friction.
@@ -36,6 +47,7 @@ impl ConstantFriction {
             mu: match kind {
                 AngleMatch::PlaneStrain => angle.sin(),
                 AngleMatch::SimpleShear => angle.tan(),
+                AngleMatch::Cone => cone(angle) * angle.sin(),
             },
         }
     }
@@ -46,6 +58,7 @@ impl ConstantFriction {
         match kind {
             AngleMatch::PlaneStrain => c * angle.cos(),
             AngleMatch::SimpleShear => c,
+            AngleMatch::Cone => cone(angle) * c * angle.cos(),
         }
     }
 }
@@ -101,6 +114,19 @@ mod tests {
             let over = most_loaded_plane(p, tau, c, angle);
             assert!(over.abs() < 1e-6 * tau, "{degrees}: {over}");
         }
+    }
+
+    /// Triaxial compression, s1 > s2 = s3: Mohr and Coulomb ask for s1 - s3 = 2 c cos phi + (s1 + s3) sin phi.
+    #[test]
+    fn the_cone_goes_through_triaxial_compression() {
+        let (angle, c, p) = (30f64.to_radians(), 50.0, 800.0);
+        let kind = AngleMatch::Cone;
+        let law = ConstantFriction::of_angle(angle, kind);
+        assert!((law.mu - 0.6928).abs() < 1e-4);
+        let tau = law.mu * p + ConstantFriction::cohesion_of(c, angle, kind);
+        let (s1, s3) = (p + 2.0 * tau / 3f64.sqrt(), p - tau / 3f64.sqrt());
+        let strength = 2.0 * c * angle.cos() + (s1 + s3) * angle.sin();
+        assert!((s1 - s3 - strength).abs() < 1e-9 * strength);
     }
 
     #[test]

@@ -11,14 +11,28 @@ pub struct Grains {
     pub phi_max: f64,
     /// Smallest volume fraction phi_min < phi_max of grains in contact [1].
     pub phi_min: f64,
+    /// Density of the fluid that fills the pores [kg/m^3]; 0 for dry grains.
+    pub pore_density: f64,
 }
 
 impl Grains {
-    /// Bulk density at rest without load, phi_max rho_s0 [kg/m^3].
+    /// Bulk density at rest without load, phi_max rho_s0 + (1 - phi_max) rho_pore [kg/m^3].
     #[inline]
     #[must_use]
     pub fn rest_density(&self) -> f64 {
-        self.phi_max * self.density
+        self.bulk_density(self.phi_max)
+    }
+
+    /// Bulk density of the loosest grains that touch [kg/m^3].
+    #[inline]
+    #[must_use]
+    pub fn loosest_density(&self) -> f64 {
+        self.bulk_density(self.phi_min)
+    }
+
+    #[inline]
+    fn bulk_density(&self, phi: f64) -> f64 {
+        phi * self.density + (1.0 - phi) * self.pore_density
     }
 
     /// d0 sqrt(rho_s0/p): the inertial number is this time the shear rate ([A] eq. 6) [s]. p > 0 [Pa].
@@ -28,10 +42,14 @@ impl Grains {
         self.diameter * (self.density / p).sqrt()
     }
 
-    /// B / gamma^2 of the closing relation for the grain compressibility K_t [s^2]; see `eos`.
+    /// B / gamma^2 of the closing relation for the grain compressibility K_t [s^2]; see `eos`. 0 for saturated grains:
+    /// they would have to draw fluid in, and the mixture keeps its volume.
     #[inline]
     #[must_use]
     pub fn dilatancy_factor(&self, compressibility: f64) -> f64 {
+        if self.pore_density > 0.0 {
+            return 0.0;
+        }
         let s = (self.phi_max - self.phi_min) * self.diameter / self.phi_max;
         self.density * compressibility * s * s
     }

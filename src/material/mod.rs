@@ -1,5 +1,6 @@
 //! Rank 1: materials. One readable file per friction law, one enum that lists them, and what all materials share:
-//! grains ([`Grains`]), cohesion, bulk friction, what happens beyond the dense regime, the pressure law.
+//! grains ([`Grains`]), cohesion, viscosity ([`Viscous`]), bulk friction, what happens beyond the dense regime, the
+//! pressure law. A fluid is a material without friction, its cohesion the yield stress.
 //!
 //! Add a law: a file with its parameters, equations, `impl Friction` and tests, and one line in [`Law`].
 
@@ -13,6 +14,7 @@ mod grains;
 mod laws_tests;
 mod mu_i;
 mod regularised;
+mod viscous;
 mod well_posed;
 
 pub use bagnold::Bagnold;
@@ -22,6 +24,7 @@ pub use constant_friction::{AngleMatch, ConstantFriction};
 pub use eos::grain_compression;
 pub use grains::Grains;
 pub use mu_i::{MuI, SAND_LAYER_FACTOR};
+pub use viscous::Viscous;
 pub use well_posed::{ill_posedness, neutral_inertial_numbers};
 
 /// A friction law mu(I): shear stress over pressure against the inertial number I >= 0. Dimensionless.
@@ -100,7 +103,11 @@ impl Friction for Law {
 /// without bound when the last neighbours leave, and with them every weight.
 pub const PARTED_DENSITY: f64 = 0.5;
 
-/// A material: grains, a friction law, and what is added to it. tau = cohesion + mu(I) p.
+/// phi_min and phi_max of a material whose grains nobody states: only says at which density it parts, 5/6 of that at rest.
+pub const FLUID_PACKING: (f64, f64) = (0.5, 0.6);
+
+/// A material: grains, a friction law, and what is added to it. tau = cohesion + mu(I) p + K gamma^n, where p is the
+/// effective pressure if the material is saturated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Size, density and packing of the grains.
@@ -110,6 +117,12 @@ pub struct Material {
     /// Shear strength without pressure >= 0 [Pa]. It is no tensile strength: pressure never falls below 0, so material
     /// that is pulled parts, and parted material carries nothing.
     pub cohesion: f64,
+    /// Viscous stress beside them. With a flow index that is not 1 the law is one without rate dependence of its own.
+    pub viscous: Viscous,
+    /// Artificial viscosity alpha that a Newtonian fluid's viscosity is made up to, between its own particles [1].
+    pub artificial_viscosity: f64,
+    /// Artificial sound speed of its equation of state [m/s]; `None` is that of the scene. [B] eq. 3: c_k.
+    pub sound_speed: Option<f64>,
     /// Bulk friction coefficient mu_b >= 0 [1]; 0 is none.
     pub bulk_friction: f64,
     /// Lowest density over rest density that is kept track of [1], above 0 and below phi_min/phi_max: see [`Material::is_dense`].
@@ -142,12 +155,59 @@ impl Material {
                 density,
                 phi_max: 0.6,
                 phi_min: 0.5,
+                pore_density: 0.0,
             },
             law: Law::MuI(law),
             cohesion: 0.0,
+            viscous: Viscous::NONE,
+            artificial_viscosity: 0.0,
+            sound_speed: None,
             bulk_friction: 0.0,
             parted_density: PARTED_DENSITY,
         }
+    }
+
+    /// A fluid of density > 0 [kg/m^3] at rest, viscous stress and yield stress >= 0 [Pa]: tau = tau_0 + K gamma^n
+    /// (Herschel and Bulkley; [B] eq. 11). Newton's fluid without yield stress, Bingham's with n = 1.
+    #[must_use]
+    pub fn fluid(density: f64, viscous: Viscous, yield_stress: f64) -> Self {
+        Self {
+            grains: Grains {
+                diameter: 0.0,
+                density: density / FLUID_PACKING.1,
+                phi_max: FLUID_PACKING.1,
+                phi_min: FLUID_PACKING.0,
+                pore_density: 0.0,
+            },
+            law: Law::ConstantFriction(ConstantFriction { mu: 0.0 }),
+            cohesion: yield_stress,
+            viscous,
+            artificial_viscosity: 0.0,
+            sound_speed: None,
+            bulk_friction: 0.0,
+            parted_density: PARTED_DENSITY,
+        }
+    }
+
+    /// Whether stress does not depend on pressure.
+    #[inline]
+    #[must_use]
+    pub fn is_fluid(&self) -> bool {
+        matches!(self.law, Law::ConstantFriction(ConstantFriction { mu }) if mu == 0.0)
+    }
+
+    /// Whether shear stress is proportional to the shear rate: Newton's fluid.
+    #[inline]
+    #[must_use]
+    pub fn is_newtonian(&self) -> bool {
+        self.is_fluid() && self.cohesion == 0.0 && self.viscous.is_linear()
+    }
+
+    /// Whether its pores are full of a fluid that carries part of the pressure.
+    #[inline]
+    #[must_use]
+    pub fn is_saturated(&self) -> bool {
+        self.grains.pore_density > 0.0
     }
 
     /// Density of the material at rest without load [kg/m^3].
@@ -162,12 +222,12 @@ impl Material {
         self.rest_density() + load / (sound_speed * sound_speed)
     }
 
-    /// Whether grains at this density [kg/m^3] touch: rho >= phi_min rho_s0. Looser material is parted: p = 0 and tau = 0
+    /// Whether grains at this density [kg/m^3] touch: rho at least that of phi_min. Looser material is parted: p = 0 and tau = 0
     /// (its cohesion too) until it is this dense again.
     #[inline]
     #[must_use]
     pub fn is_dense(&self, density: f64) -> bool {
-        density >= self.grains.phi_min * self.grains.density
+        density >= self.grains.loosest_density()
     }
 
     /// The stress that scales the cap of the viscosity [Pa]: cohesion + mu_s p. It is the yield stress for laws that
@@ -177,25 +237,49 @@ impl Material {
     pub fn strength(&self, p: f64) -> f64 {
         self.cohesion + self.law.static_friction() * p.max(0.0)
     }
-}
 
-impl Rheology for Material {
+    /// Viscosity tau/gamma [Pa s], that of what yields at most `cap_time` [s] times [`Material::strength`]; that of
+    /// shear-thinning fluids at most the one at gamma = 1/cap_time. R and p as in [`Rheology`].
     #[inline]
-    fn shear_stress(&self, gamma: f64, p: f64, correction: f64) -> f64 {
+    #[must_use]
+    pub fn capped_viscosity(&self, gamma: f64, p: f64, correction: f64, cap_time: f64) -> f64 {
+        let cap = cap_time * self.strength(p);
+        let plastic = if gamma > STILL {
+            (self.plastic_stress(gamma, p, correction) / gamma).min(cap)
+        } else {
+            cap
+        };
+        plastic + self.viscous.viscosity(gamma, 1.0 / cap_time)
+    }
+
+    /// Cohesion and friction [Pa].
+    #[inline]
+    fn plastic_stress(&self, gamma: f64, p: f64, correction: f64) -> f64 {
         if p <= 0.0 {
             return self.cohesion;
         }
         let time = correction * self.grains.inertial_time(p);
         self.cohesion + p * self.law.friction(time * gamma)
     }
+}
+
+/// Shear rates below this count as none [1/s]: far below any that matters, far above rounding.
+const STILL: f64 = 1e-12;
+
+impl Rheology for Material {
+    #[inline]
+    fn shear_stress(&self, gamma: f64, p: f64, correction: f64) -> f64 {
+        self.plastic_stress(gamma, p, correction) + self.viscous.stress(gamma)
+    }
 
     #[inline]
     fn shear_stress_slope(&self, gamma: f64, p: f64, correction: f64) -> f64 {
+        let viscous = self.viscous.slope(gamma);
         if p <= 0.0 {
-            return 0.0;
+            return viscous;
         }
         let time = correction * self.grains.inertial_time(p);
-        p * time * self.law.slope(time * gamma)
+        viscous + p * time * self.law.slope(time * gamma)
     }
 
     #[inline]
@@ -203,7 +287,7 @@ impl Rheology for Material {
         self.cohesion + self.law.friction(0.0) * p.max(0.0)
     }
 
-    /// With t = R d sqrt(rho_s/p) and I = t q: mu(I) + (r/(t p)) I = (x - cohesion)/p.
+    /// With t = R d sqrt(rho_s/p) and I = t q: mu(I) + ((r + K)/(t p)) I = (x - cohesion)/p where the viscous part is linear.
     #[inline]
     fn resolvent(&self, x: f64, r: f64, p: f64, correction: f64) -> f64 {
         let excess = x - self.yield_stress(p);
@@ -212,9 +296,11 @@ impl Rheology for Material {
         }
         let time = correction * self.grains.inertial_time(p);
         if p <= 0.0 || time <= 0.0 {
-            // No pressure or no rate dependence: tau is the yield stress.
-            return excess / r;
+            // No pressure or no rate dependence of friction: what yields is the yield stress.
+            return self.viscous.resolvent(excess, r);
         }
+        debug_assert!(self.viscous.is_linear(), "mu(I) and a power law at once");
+        let r = r + self.viscous.consistency;
         self.law.resolvent(r / (time * p), (x - self.cohesion) / p) / time
     }
 }
@@ -241,10 +327,29 @@ mod tests {
             [0.0, 40.0].map(|cohesion| Material {
                 law,
                 cohesion,
+                viscous: Viscous::newtonian(0.1 * cohesion),
                 ..sand.clone()
             })
         };
-        laws.into_iter().flat_map(of).collect()
+        let clay = Viscous {
+            consistency: 4.472,
+            flow_index: 0.472,
+        };
+        let silt = Material {
+            law: Law::ConstantFriction(ConstantFriction { mu: 0.5 }),
+            grains: Grains {
+                diameter: 0.0,
+                ..sand.grains
+            },
+            viscous: clay,
+            ..sand.clone()
+        };
+        let fluids = [
+            Material::fluid(1000.0, Viscous::newtonian(1e-3), 0.0),
+            Material::fluid(1540.0, clay, 30.0),
+            silt,
+        ];
+        laws.into_iter().flat_map(of).chain(fluids).collect()
     }
 
     #[test]

@@ -7,7 +7,8 @@
 
 use super::lift;
 use super::raw::{
-    Angle, At, Coordinates, Entry, Length, Named, Place, Ratio, RawGauge, RawMaterial, RawScene,
+    Angle, At, Coordinates, Entry, Length, Named, Place, Pressure, Ratio, RawGauge, RawMaterial,
+    RawScene, Viscosity,
 };
 use super::types::{Point, Scene};
 use super::{SceneErrors, parse_changed};
@@ -47,6 +48,8 @@ enum MaterialKey {
     Angle,
     InertialScale,
     Diameter,
+    Consistency,
+    YieldStress,
 }
 
 /// 180/pi: degrees of a radian.
@@ -137,6 +140,8 @@ fn materials(i: usize, name: &str, material: &RawMaterial, list: &mut Vec<Adjust
         let (unit, display_unit) = match target {
             MaterialKey::InertialScale => ("1", None),
             MaterialKey::Diameter => ("m", MILLIMETRES),
+            MaterialKey::Consistency => ("Pa.s", None),
+            MaterialKey::YieldStress => ("Pa", None),
             _ => ("rad", DEGREES),
         };
         if let Some(start) = start {
@@ -174,6 +179,26 @@ fn materials(i: usize, name: &str, material: &RawMaterial, list: &mut Vec<Adjust
                 MaterialKey::Angle,
                 start,
                 (0.0, 1.25),
+            );
+            return;
+        }
+        RawMaterial::Fluid(m) => {
+            let preset = lift::fluid_preset(m);
+            let consistency = m.consistency.as_ref().map(|v| v.value.0);
+            add(
+                "consistency",
+                "consistency, the viscosity where the flow index is 1,",
+                MaterialKey::Consistency,
+                consistency.or(preset.map(|p| p.1.consistency)),
+                (0.0, 1e9),
+            );
+            let yield_stress = m.yield_stress.as_ref().map(|v| v.value.0);
+            add(
+                "yield_stress",
+                "yield stress",
+                MaterialKey::YieldStress,
+                yield_stress.or(preset.map(|p| p.2)).or(Some(0.0)),
+                (0.0, 1e9),
             );
             return;
         }
@@ -227,7 +252,7 @@ fn points(gauge: &RawGauge) -> Vec<(&'static str, &Coordinates<Length>)> {
         RawGauge::Discharge(g) => vec![("from", &g.from), ("to", &g.to)],
         RawGauge::Pressure(g) => vec![("at", &g.at)],
         RawGauge::Front(g) => vec![("origin", &g.origin)],
-        RawGauge::Force(_) => Vec::new(),
+        RawGauge::Force(_) | RawGauge::Mass(_) => Vec::new(),
     };
     all.into_iter()
         .filter_map(|(name, at)| Some((name, &at.as_ref()?.value)))
@@ -266,7 +291,7 @@ fn apply(raw: &mut RawScene, target: Target, value: f64) {
                 (Some(RawGauge::Discharge(g)), _) => &mut g.to,
                 (Some(RawGauge::Pressure(g)), _) => &mut g.at,
                 (Some(RawGauge::Front(g)), _) => &mut g.origin,
-                (Some(RawGauge::Force(_)) | None, _) => return,
+                (Some(RawGauge::Force(_) | RawGauge::Mass(_)) | None, _) => return,
             };
             let values = at.as_mut().map(|at| &mut at.value.values);
             if let Some(coordinate) = values.and_then(|v| v.get_mut(axis)) {
@@ -292,7 +317,7 @@ fn apply_material(material: &mut RawMaterial, place: &Place, key: MaterialKey, v
                 MaterialKey::Diameter => {
                     $raw.grain_diameter = at(place, "grain_diameter", Length(value));
                 }
-                MaterialKey::Angle => {}
+                MaterialKey::Angle | MaterialKey::Consistency | MaterialKey::YieldStress => {}
             }
         };
     }
@@ -302,6 +327,10 @@ fn apply_material(material: &mut RawMaterial, place: &Place, key: MaterialKey, v
         RawMaterial::ConstantFriction(raw) => {
             raw.friction_angle = at(place, "friction_angle", Angle(value));
         }
+        RawMaterial::Fluid(raw) if key == MaterialKey::Consistency => {
+            raw.consistency = at(place, "consistency", Viscosity(value));
+        }
+        RawMaterial::Fluid(raw) => raw.yield_stress = at(place, "yield_stress", Pressure(value)),
     }
 }
 

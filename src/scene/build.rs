@@ -117,8 +117,9 @@ fn particle_mass(scene: &Scene, place: &Point, density: f64, cell: f64) -> f64 {
 fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
     let mut random = Random::new(scene.numerics.seed);
     let mut grains = Grains {
-        exact_yield: scene.numerics.keeps_stress(),
+        exact_yield: scene.keeps_stress(),
         wall_friction: scene.has_wall_friction(),
+        saturated: scene.has_pore_pressure(),
         ..Grains::default()
     };
     let mut id = 0;
@@ -137,6 +138,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
     };
     for body in &scene.bodies {
         let material = &scene.materials[body.material].material;
+        let sound_speed = material.sound_speed.unwrap_or(scene.numerics.sound_speed);
         let lattice = lattice(
             &body.shape,
             body.level.map(|l| (up, l)),
@@ -151,8 +153,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
             let position: Vector<D> =
                 std::array::from_fn(|k| place[k] + reach(k, place) * random.symmetric());
             let mut velocity: Vector<D> = narrow(&body.velocity);
-            let mut density =
-                material.density_under(load_above(scene, place, up), scene.numerics.sound_speed);
+            let mut density = material.density_under(load_above(scene, place, up), sound_speed);
             let mut shear_rate = 0.0;
             if let Some(flow) = &flow {
                 let here = flow.at(&crate::solver::three(&position), scene.numerics.sound_speed);

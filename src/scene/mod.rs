@@ -172,6 +172,18 @@ impl Scene {
         types::up(self.domain.gravity, self.dimension)
     }
 
+    /// Whether particles keep the stress of the exact yield: some material yields, or is no Newtonian fluid.
+    #[must_use]
+    pub fn keeps_stress(&self) -> bool {
+        self.numerics.keeps_stress() && self.materials.iter().any(|m| !m.material.is_newtonian())
+    }
+
+    /// Whether a material's pores are full.
+    #[must_use]
+    pub fn has_pore_pressure(&self) -> bool {
+        self.materials.iter().any(|m| m.material.is_saturated())
+    }
+
     /// Whether a wall or gate has Coulomb friction.
     #[must_use]
     pub fn has_wall_friction(&self) -> bool {

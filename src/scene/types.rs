@@ -268,6 +268,8 @@ pub struct Gauge {
     pub name: String,
     /// What it measures.
     pub kind: GaugeKind,
+    /// Index into [`Scene::materials`] of the one that it sees; all if `None`.
+    pub material: Option<usize>,
 }
 
 /// What a gauge measures; definitions in docs/theory.md.
@@ -314,6 +316,13 @@ pub enum GaugeKind {
     Pressure {
         /// The point [m].
         at: Point,
+    },
+    /// Mass in a box [kg].
+    Mass {
+        /// Lower corner [m].
+        lower: Point,
+        /// Upper corner [m].
+        upper: Point,
     },
     /// Outermost position along `direction` with a depth of at least `least_depth`, from `origin` [m],
     /// with the 99.5 % mass quantile beside it.

@@ -1,13 +1,10 @@
 //! Per particle: density, relaxed strain rate, pressure from the equation of state, viscosity from the rheology
 //! (docs/theory.md, E5 and E6). No neighbours here.
 
-use crate::material::{Grains, Material, Rheology, bulk_pressure, grain_compression};
+use crate::material::{Grains, Material, bulk_pressure, grain_compression};
 use crate::state::State;
 
 use super::{Solver, SolverError};
-
-/// Shear rates below this count as none [1/s]: far below any that matters, far above rounding.
-const STILL: f64 = 1e-12;
 
 /// What the rheology makes of one particle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,31 +50,24 @@ impl<const D: usize> Solver<D> {
 
     /// Pressures and viscosities from the state and its kinematics.
     pub(super) fn respond(&mut self, state: &State<D>) {
+        if self.has_effective_pressure {
+            self.load_all(state);
+            self.subtract_pore_pressure(state);
+        }
         let grains = &state.grains;
-        let n = grains.len();
-        let bulk = self.materials.iter().any(|m| m.bulk_friction > 0.0);
         let mut responses = std::mem::take(&mut self.responses);
-        responses.resize(n, Response::default());
+        responses.resize(grains.len(), Response::default());
         self.workers.each(&mut responses, |i, response| {
-            let k = &self.kinematics[i];
             let material = &self.materials[grains.phase[i] as usize];
-            let (rho, relaxed) = (grains.density[i], grains.relaxed_shear[i]);
-            *response = self.granular(material, rho, relaxed, k.shear, k.correction);
-            if bulk {
-                response.normal_pressure = response.pressure
-                    + bulk_pressure(
-                        material.bulk_friction,
-                        response.pressure,
-                        k.divergence,
-                        k.correction * k.shear,
-                        rho * self.kernel.h * self.numerics.sound_speed,
-                    );
-            }
+            let rho = grains.density[i];
+            let load = self.load(material, rho, grains.relaxed_shear[i]);
+            let p = self.effective.get(i).map_or(load.0, |p| *p);
+            *response = self.resist(material, i, rho, load, p);
         });
         fill(&mut self.pressure, &responses, |r| r.pressure);
         fill(&mut self.viscosity, &responses, |r| r.viscosity);
         fill(&mut self.inertial_number, &responses, |r| r.inertial_number);
-        if bulk {
+        if self.has_bulk_friction {
             fill(&mut self.normal_pressure, &responses, |r| r.normal_pressure);
         }
         self.pair_viscosity.clear();
@@ -87,20 +77,35 @@ impl<const D: usize> Solver<D> {
         self.responses = responses;
     }
 
-    /// [A] eqs. 6, 7, 41, 43, 44 with the cap.
-    fn granular(
-        &self,
-        m: &Material,
-        rho: f64,
-        relaxed: f64,
-        shear: f64,
-        correction: f64,
-    ) -> Response {
-        let c0 = self.numerics.sound_speed;
+    /// Pressures alone.
+    pub(super) fn load_all(&mut self, state: &State<D>) {
+        let grains = &state.grains;
+        let mut pressure = std::mem::take(&mut self.pressure);
+        pressure.resize(grains.len(), 0.0);
+        self.workers.each(&mut pressure, |i, p| {
+            let material = &self.materials[grains.phase[i] as usize];
+            *p = self
+                .load(material, grains.density[i], grains.relaxed_shear[i])
+                .0;
+        });
+        self.pressure = pressure;
+    }
+
+    /// Artificial sound speed of a material [m/s].
+    #[inline]
+    pub(super) fn sound_speed_of(&self, m: &Material) -> f64 {
+        m.sound_speed.unwrap_or(self.numerics.sound_speed)
+    }
+
+    /// Pressure [Pa] and what compression of the grains changes in the inertial number [1]: [A] eqs. 41, 43, 44; of fluids
+    /// and saturated grains [B] eq. 3.
+    #[inline]
+    fn load(&self, m: &Material, rho: f64, relaxed: f64) -> (f64, f64) {
+        let c = self.sound_speed_of(m);
         let rest = m.rest_density();
-        let compressibility = 1.0 / (rest * c0 * c0);
+        let compressibility = 1.0 / (rest * c * c);
         let b = m.grains.dilatancy_factor(compressibility) * relaxed * relaxed;
-        let loosest = m.grains.phi_min / m.grains.phi_max;
+        let loosest = m.grains.loosest_density() / rest;
         // Rods of a planar scene are compressed across alone, grains in space and in rings all round.
         let (x, factor) = if D == 3 || self.geometry.is_axisymmetric() {
             let x = grain_compression::<3>(rho / rest, b, loosest);
@@ -108,29 +113,48 @@ impl<const D: usize> Solver<D> {
         } else {
             (grain_compression::<2>(rho / rest, b, loosest), 1.0)
         };
-        let pressure = (x - 1.0) / compressibility;
-        // Parted material carries nothing; dense material without pressure still has its cohesion.
-        if pressure <= 0.0 && (m.cohesion == 0.0 || !m.is_dense(rho)) {
-            return Response::default();
-        }
-        let correction = correction * factor;
-        let inertial_number = if pressure > 0.0 {
-            correction * shear * m.grains.inertial_time(pressure)
-        } else {
-            0.0
-        };
-        let cap = self.numerics.cap_time * m.strength(pressure);
-        let viscosity = if shear > STILL {
-            (m.shear_stress(shear, pressure, correction) / shear).min(cap)
-        } else {
-            cap
-        };
-        Response {
+        ((x - 1.0) / compressibility, factor)
+    }
+
+    /// Viscosity, inertial number and bulk friction at a pressure p between grains: [A] eqs. 6, 7 with the cap.
+    #[inline]
+    fn resist(
+        &self,
+        m: &Material,
+        i: usize,
+        rho: f64,
+        (pressure, factor): (f64, f64),
+        p: f64,
+    ) -> Response {
+        let k = &self.kinematics[i];
+        let mut response = Response {
             pressure,
-            viscosity,
-            inertial_number,
+            normal_pressure: pressure,
             ..Response::default()
+        };
+        // Parted material carries nothing; dense material without pressure still has its cohesion and viscosity.
+        let holds = m.cohesion > 0.0 || m.viscous.consistency > 0.0;
+        if p <= 0.0 && !(holds && m.is_dense(rho)) {
+            return response;
         }
+        let correction = k.correction * factor;
+        if p > 0.0 {
+            response.inertial_number = correction * k.shear * m.grains.inertial_time(p);
+        }
+        // A fluid's stress is that of the corrected rate, and works on it: Phi(R gamma). Sand's must match its pressure.
+        let r = if m.is_fluid() { k.correction } else { 1.0 };
+        response.viscosity =
+            r * r * m.capped_viscosity(r * k.shear, p, correction, self.numerics.cap_time);
+        if self.has_bulk_friction {
+            response.normal_pressure += bulk_pressure(
+                m.bulk_friction,
+                p,
+                k.divergence,
+                k.correction * k.shear,
+                rho * self.kernel.h * self.numerics.sound_speed,
+            );
+        }
+        response
     }
 }
 

@@ -154,14 +154,14 @@ impl<const D: usize> Solver<D> {
             let mut wall_rows = block.wall_rows.iter().peekable();
             for row in 0..block.rows() {
                 let i = b * CHUNK + row;
-                let flat = wall_rows
-                    .next_if(|w| w.row as usize == row)
-                    .is_some_and(|w| w.flat);
+                let seen = wall_rows.next_if(|w| w.row as usize == row);
+                let flat = seen.is_some_and(|w| w.flat);
                 let (xi, vi) = (&state.grains.position[i], &self.viscous.velocity[i]);
                 if block.wall_row(row).is_empty() {
                     continue;
                 }
                 let tau = self.viscous.stress(i);
+                let leant = seen.map_or([0.0; D], |w| self.leant(state, i, &w.lean, dt));
                 for &w in block.wall_row(row) {
                     let group = self.walls.group[w as usize] as usize;
                     let weight = self.walls.weight[w as usize];
@@ -189,8 +189,11 @@ impl<const D: usize> Solver<D> {
                     let drag =
                         -2.0 * share * c * dot(&pg, &sub(vi, &self.walls.velocity[w as usize]));
                     force = add(&force, &scale(drag, &pg));
+                    // Each point's part of K (a - g), as it was counted.
+                    let n = self.wall_normal(xi, w, state);
+                    let part = scale(-vf * dot(&n, &x).powi(2), &seen(leant));
                     for k in 0..D {
-                        state.impulse[group][k] -= dt * self.width * volume * force[k];
+                        state.impulse[group][k] -= dt * self.width * volume * force[k] + part[k];
                     }
                 }
             }

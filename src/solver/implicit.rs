@@ -166,7 +166,8 @@ impl<const D: usize> Solver<D> {
             self.stress(direction, searched, false);
             let mut curvature = self.force(searched, product, false, |i, f| {
                 let d = &direction[i];
-                let q: Vector<D> = std::array::from_fn(|k| mass[i] * d[k] - dt * f[k]);
+                let own = self.inertia(mass[i], i, d);
+                let q: Vector<D> = std::array::from_fn(|k| own[k] - dt * f[k]);
                 (q, dot(d, &q))
             });
             self.each_friction(searched, None, |i, push| {
@@ -216,7 +217,8 @@ impl<const D: usize> Solver<D> {
         let mass = &state.grains.mass;
         let norm2 = self.force(start, residual, true, |i, f| {
             let (aim, v) = (&self.prediction[i].velocity, start[i].velocity::<D>());
-            let r: Vector<D> = std::array::from_fn(|k| mass[i] * (aim[k] - v[k]) + dt * f[k]);
+            let change = self.inertia(mass[i], i, &sub(aim, &v));
+            let r: Vector<D> = std::array::from_fn(|k| change[k] + dt * f[k]);
             (r, dot(&r, &r))
         });
         if held.is_empty() {

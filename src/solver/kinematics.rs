@@ -63,6 +63,7 @@ impl<const D: usize> Solver<D> {
         self.records = records;
         self.lists.blocks = blocks;
         self.kinematics = kinematics;
+        self.note_lean(state);
     }
 
     #[inline(always)]
@@ -124,7 +125,9 @@ impl<const D: usize> Solver<D> {
             c: [[0.0; D]; D],
             cv: [0.0; D],
             flat: false,
+            lean: [[0.0; D]; D],
         };
+        let is_fluid = self.materials[grains.phase[i] as usize].is_fluid();
         let mut any = false;
         let mut face = Face::None;
         for &wall in near {
@@ -140,9 +143,20 @@ impl<const D: usize> Solver<D> {
             let projection = self.wall_projection(xi, wall, state);
             let seen =
                 |a: &Vector<D>| -> Vector<D> { projection.map_or(*a, |n| scale(dot(&n, a), &n)) };
-            let touched =
-                projection.filter(|n| self.touch(contacts, first_contact, (i, wall), n, &g));
-            face = face.with(touched);
+            if let Some(n) = &projection {
+                self.touch(contacts, first_contact, (i, wall), n, &g);
+            }
+            face = face.with(projection);
+            if is_fluid {
+                let n = projection.unwrap_or_else(|| self.wall_normal(xi, wall, state));
+                let part = -vf * dot(&n, &x).powi(2);
+                for a in 0..D {
+                    for b in 0..D {
+                        let whole = f64::from(u8::from(a == b));
+                        w.lean[a][b] += part * projection.map_or(whole, |n| n[a] * n[b]);
+                    }
+                }
+            }
             for k in 0..D {
                 w.s[k] += g[k];
             }
@@ -268,13 +282,18 @@ impl<const D: usize> Solver<D> {
         state: &State<D>,
     ) -> Option<Vector<D>> {
         let group = self.walls.group[wall as usize] as usize;
-        if !self.walls.groups[group].free_slip {
-            return None;
-        }
+        let free = self.walls.groups[group].free_slip;
+        free.then(|| self.wall_normal(xi, wall, state))
+    }
+
+    /// Normal towards the material of a wall point that a particle at xi sees.
+    #[inline(always)]
+    pub(super) fn wall_normal(&self, xi: &Vector<D>, wall: u32, state: &State<D>) -> Vector<D> {
+        let group = self.walls.group[wall as usize] as usize;
         let gate = group.checked_sub(self.fixed_groups);
-        Some(gate.map_or(self.walls.normal[wall as usize], |g| {
+        gate.map_or(self.walls.normal[wall as usize], |g| {
             self.plates[g].normal_at(xi, state.gates[g].opening)
-        }))
+        })
     }
 }
 

@@ -14,6 +14,7 @@ mod fluid_row;
 mod grid;
 mod implicit;
 mod kinematics;
+mod lean;
 mod lists;
 mod numerics;
 mod pair;
@@ -21,12 +22,14 @@ mod paper_a;
 mod passes;
 mod plain;
 mod plastic;
+mod pore;
 mod pressure;
 mod record;
 mod rest;
 mod ring;
 #[cfg(test)]
 mod ring_tests;
+mod shift;
 #[cfg(test)]
 mod sweep_tests;
 mod timestep;
@@ -48,7 +51,7 @@ use crate::boundary::{Mover, Plate, WallPoints};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
 use crate::math::{Arch, Geometry, Quad, Vector, Workers, norm};
-use crate::state::State;
+use crate::state::{Grains, State};
 
 use constitutive::Response;
 use implicit::Viscous;
@@ -128,8 +131,8 @@ pub struct StepInputs<'a> {
     pub rates: &'a [f64],
 }
 
-/// Sees each move of an internal step: positions before and after [m], and masses [kg].
-pub type OnMove<'a, const D: usize> = dyn FnMut(&[Vector<D>], &[Vector<D>], &[f64]) + 'a;
+/// Sees each move of an internal step: positions before it [m], and the particles after it.
+pub type OnMove<'a, const D: usize> = dyn FnMut(&[Vector<D>], &Grains<D>) + 'a;
 
 /// What one internal step did.
 #[derive(Clone, Copy, Debug)]
@@ -168,6 +171,12 @@ pub struct Solver<const D: usize> {
     /// Instructions of the hot loops.
     arch: Arch,
     can_sleep: bool,
+    has_bulk_friction: bool,
+    has_fluids: bool,
+    /// Whether a material is saturated.
+    has_pores: bool,
+    /// Whether what presses grain on grain, or rubs on a wall, is not the pressure of every particle.
+    has_effective_pressure: bool,
     lists: Lists<D>,
     /// Place and motion of each particle as sweeps over pairs look it up.
     records: Vec<Record>,
@@ -182,6 +191,17 @@ pub struct Solver<const D: usize> {
     loads: Vec<Quad>,
     /// Pressure with bulk friction, what momentum feels [Pa]; empty unless a material has bulk friction.
     normal_pressure: Vec<f64>,
+    /// Pressure between grains, that of saturated material without its pores' [Pa]; empty where it is the pressure.
+    effective: Vec<f64>,
+    pore: pore::Work,
+    /// 1 for fluids without yield stress, else 0; empty in scenes without.
+    flows: Vec<f64>,
+    /// Part of each particle's momentum that walls are given; empty in scenes without fluids.
+    lean: Vec<crate::math::Tensor<D>>,
+    /// Where surfaces are; empty in scenes that do not shift.
+    openness: Vec<shift::Openness<D>>,
+    /// Shift velocity of each particle in the step [m/s]; empty in scenes that do not shift.
+    shift: Vec<Vector<D>>,
     viscosity: Vec<f64>,
     pair_viscosity: Vec<f64>,
     inertial_number: Vec<f64>,
@@ -218,6 +238,11 @@ impl<const D: usize> Solver<D> {
         for mover in &movers {
             mover.place(&mut walls, 0.0);
         }
+        let has_bulk_friction = materials.iter().any(|m| m.bulk_friction > 0.0);
+        let has_pores = materials.iter().any(Material::is_saturated);
+        let rubs = walls.groups.iter().any(|g| g.friction > 0.0);
+        let has_fluids = materials.iter().any(Material::is_fluid);
+        let has_effective_pressure = has_pores || (rubs && has_fluids);
         let can_sleep = rest::can_sleep(&numerics, &walls);
         for plate in &mut plates {
             plate.append(&mut walls);
@@ -244,6 +269,10 @@ impl<const D: usize> Solver<D> {
             workers: Arc::new(Workers::new(threads)),
             arch: Arch::detect(),
             can_sleep,
+            has_bulk_friction,
+            has_fluids,
+            has_pores,
+            has_effective_pressure,
             records: Vec::new(),
             kinematics: Vec::new(),
             volume: Vec::new(),
@@ -252,6 +281,12 @@ impl<const D: usize> Solver<D> {
             pressure: Vec::new(),
             loads: Vec::new(),
             normal_pressure: Vec::new(),
+            effective: Vec::new(),
+            pore: pore::Work::default(),
+            flows: Vec::new(),
+            lean: Vec::new(),
+            openness: Vec::new(),
+            shift: Vec::new(),
             viscosity: Vec::new(),
             pair_viscosity: Vec::new(),
             inertial_number: Vec::new(),
@@ -271,6 +306,10 @@ impl<const D: usize> Solver<D> {
     /// Sorts a fresh state's particles and derives everything else from it.
     pub fn start(&mut self, state: &mut State<D>) {
         self.renew_lists(state);
+        if self.has_pores {
+            self.sweep_kinematics(state);
+            self.seep(state);
+        }
         self.derive(state);
     }
 
@@ -310,12 +349,13 @@ impl<const D: usize> Solver<D> {
         if let Scheme::PaperA(choices) = self.numerics.scheme {
             return self.step_paper_a(&choices, state, (dt, bound), on_move);
         }
+        self.find_shift(state);
         self.sweep_pressure(state, dt);
         let iterations = self.solve_viscous(state, dt)?;
         let impulse = state.impulse.clone();
         self.add_reactions(state, dt);
         self.move_grains(state, dt)?;
-        on_move(&self.before, &state.grains.position, &state.grains.mass);
+        on_move(&self.before, &state.grains);
         self.move_walls(state, dt);
         self.move_gates(state, inputs.openings, dt);
         self.drain(state);
@@ -326,6 +366,7 @@ impl<const D: usize> Solver<D> {
         if came {
             self.sweep_kinematics_in_valid_lists(state, true);
         }
+        self.seep(state);
         self.respond(state);
         state.time += dt;
         state.steps += 1;
@@ -377,10 +418,16 @@ impl<const D: usize> Solver<D> {
         let grains = &mut state.grains;
         self.before.clone_from(&grains.position);
         let (x, v) = (&mut grains.position, &mut grains.velocity);
+        let shift = &self.shift;
         self.workers.both(x, v, |i, x, v| {
             *v = new[i];
             for k in 0..D {
                 x[k] += dt * v[k];
+            }
+            if let Some(shift) = shift.get(i) {
+                for k in 0..D {
+                    x[k] += dt * shift[k];
+                }
             }
             []
         });
@@ -505,6 +552,17 @@ impl<const D: usize> Solver<D> {
         } else {
             &self.normal_pressure
         }
+    }
+
+    /// Pore pressure of each particle of a state that this solver has just stepped, started or resumed [Pa]; 0 for what is
+    /// not saturated.
+    #[must_use]
+    pub fn pore_pressure(&self, state: &State<D>, i: usize) -> f64 {
+        state
+            .grains
+            .pore_pressure
+            .get(i)
+            .map_or(0.0, |p| p.max(0.0))
     }
 
     /// Inertial number of each particle [1].

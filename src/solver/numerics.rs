@@ -52,6 +52,8 @@ pub struct Numerics {
     pub pair_viscosity_share: f64,
     /// Artificial viscosity alpha of [A] eq. 38 [1]; default 0.
     pub artificial_viscosity: f64,
+    /// Factor on the shifting of fluid particles towards even spacing [1]; 0 switches it off.
+    pub shifting: f64,
     /// Relative tolerance of the viscous solve [1]; default 3e-4.
     pub solver_tolerance: f64,
     /// Most iterations of the viscous solve before it is an error.

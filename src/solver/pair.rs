@@ -22,8 +22,10 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) c: Tensor<D>,
     /// sum c (P g)(P g)^T v_w.
     pub(super) cv: Vector<D>,
-    /// Whether it sees one flat face with friction and nothing else: then s has no part along it.
+    /// Whether it sees one flat face that lets it slide and nothing else: then s has no part along it.
     pub(super) flat: bool,
+    /// Of fluids: sum |F| V (n.x)^2 n n^T, how far their stress is carried on into walls (docs/theory.md, W4); else 0.
+    pub(super) lean: Tensor<D>,
 }
 
 /// A chunk of rows.
@@ -115,5 +117,30 @@ impl<const D: usize> Block<D> {
             self.group_ends[row - 1]
         };
         start as usize..self.group_ends[row] as usize
+    }
+
+    /// Calls `visit(j, k, g)` for the neighbours of a row, one at a time: k = 2 V_j |F| [1/m^2], g = V_j grad_i W_ij [1/m].
+    /// Only before the coefficients are multiplied by viscosity.
+    #[inline(always)]
+    pub(super) fn for_each_pair(&self, row: usize, mut visit: impl FnMut(u32, f64, Vector<D>)) {
+        let over = 1.0 / (D as f64 + 2.0);
+        let range = self.groups(row);
+        let groups = self.j[range.clone()]
+            .iter()
+            .zip(&self.g[range.clone()])
+            .zip(&self.c[range]);
+        for ((j, g), c) in groups {
+            for (m, &j) in j.iter().enumerate() {
+                let mut g_ij = [0.0; D];
+                let mut g2 = 0.0;
+                for k in 0..D {
+                    g_ij[k] = g[k].0[m];
+                    g2 += g_ij[k] * g_ij[k];
+                }
+                if g2 > 0.0 {
+                    visit(j, over * g2 * c.0[m], g_ij);
+                }
+            }
+        }
     }
 }

@@ -51,15 +51,28 @@ impl<const D: usize> Solver<D> {
         );
     }
 
+    /// Pressure that friction is made of [Pa].
+    pub(super) fn yield_pressure(&self, i: usize) -> f64 {
+        self.effective.get(i).map_or(self.pressure[i], |p| *p)
+    }
+
     /// (lambda, q) of a trial stress.
     fn admissible(&self, material: &Material, i: usize, x: &Tensor<D>) -> (Tensor<D>, Tensor<D>) {
-        let (p, r) = (self.pressure[i], self.viscosity[i]);
+        let (p, r) = (self.yield_pressure(i), self.viscosity[i]);
         let zero = [[0.0; D]; D];
-        if r <= 0.0 {
+        if r <= 0.0 || material.is_newtonian() {
+            // Newton's fluid has all its stress in the linear solve.
             return (zero, zero);
         }
         let size = self.geometry.size(x);
-        let q = material.resolvent(size, r, p, self.kinematics[i].correction);
+        let correction = self.kinematics[i].correction;
+        let q = if material.is_fluid() {
+            // Phi(R |q|): R tau(R q) + r q = |x|.
+            material.resolvent(size / correction, r / (correction * correction), p, 1.0)
+                / correction
+        } else {
+            material.resolvent(size, r, p, correction)
+        };
         if q <= 0.0 {
             return (*x, zero);
         }

@@ -2,6 +2,7 @@
 //!
 //! Symbols: g_ij = V_j grad W_ij; a_i = -(1/rho_i) [sum_j (p_i + p_j) g_ij + sum_walls 2 p_i g_iw]; F = W'(r)/r.
 
+use crate::material::Material;
 use crate::math::{Four, Lanes, Quad, Tensor, Vector, in_lanes};
 use crate::state::State;
 
@@ -44,6 +45,7 @@ impl<const D: usize> Solver<D> {
             ]);
         });
         self.prediction.resize(n, Prediction::default());
+        self.note_what_flows(state);
         let mut prediction = std::mem::take(&mut self.prediction);
         let mut blocks = std::mem::take(&mut self.lists.blocks);
         self.workers
@@ -69,10 +71,35 @@ impl<const D: usize> Solver<D> {
                     }
                 }
                 block.wall_rows = rows;
+                self.lean_on_walls(state, dt, block, first, out);
             });
         self.loads = loads;
         self.lists.blocks = blocks;
         self.prediction = prediction;
+    }
+
+    /// Notes what has no yield stress: it cannot rest with another pressure than the hydrostatic one, so diffusion needs no
+    /// gate there.
+    fn note_what_flows(&mut self, state: &State<D>) {
+        let flows = |m: &Material| m.is_fluid() && m.cohesion == 0.0;
+        if !self.materials.iter().any(flows) {
+            return;
+        }
+        let phase = &state.grains.phase;
+        self.flows.resize(phase.len(), 0.0);
+        self.workers.each(&mut self.flows, |i, f| {
+            *f = f64::from(u8::from(flows(&self.materials[phase[i] as usize])));
+        });
+    }
+
+    /// alpha less what the material's own viscosity is worth: nu = alpha h c/(2 (D + 2)).
+    fn missing_viscosity(&self, m: &Material) -> f64 {
+        if m.artificial_viscosity == 0.0 || !m.is_newtonian() {
+            return 0.0;
+        }
+        let own = 2.0 * (D as f64 + 2.0) * m.viscous.consistency
+            / (m.rest_density() * self.kernel.h * self.sound_speed_of(m));
+        (m.artificial_viscosity - own).max(0.0)
     }
 
     /// 1/rho with the very volume that pair coefficients hold, so that forces cancel pair by pair.
@@ -100,9 +127,12 @@ impl<const D: usize> Solver<D> {
         let numerics = &self.numerics;
         let splat = |a: f64| Four::splat(lanes, a);
         let [pressure, shear, rho, eta] = loads[i].0;
-        let c0 = numerics.sound_speed;
+        let material = &self.materials[grains.phase[i] as usize];
+        let c0 = self.sound_speed_of(material);
+        let flows = self.flows.get(i).is_some_and(|f| *f > 0.0);
         let diffuse = numerics.density_diffusion > 0.0;
         let damp = numerics.artificial_viscosity * self.kernel.h * c0;
+        let own_damping = self.missing_viscosity(material) * self.kernel.h * c0;
         // grad W = F x: |g|^2 c = 2 (D + 2) V |F|.
         let to_f = splat(-1.0 / (2.0 * (D as f64 + 2.0)));
         let gate = splat(0.5 * numerics.diffusion_gate_time);
@@ -137,14 +167,22 @@ impl<const D: usize> Solver<D> {
                 force[k] -= push * g_ij[k];
             }
             let mean_rho = half * (splat(rho) + rho_j);
-            if damp > 0.0 {
+            if damp > 0.0 || own_damping > 0.0 {
                 // [A] eq. 38: (v.x)/r^2 = (v.g) F/|g|^2, on approaching and receding pairs alike.
                 let mut along = zero;
                 for k in 0..D {
                     let vj = Four::gather(lanes, |m| grains.velocity[j[m] as usize][k]);
                     along += (splat(grains.velocity[i][k]) - vj) * g_ij[k];
                 }
-                let damping = splat(damp) * mean_rho * along * to_f * geometric;
+                let mut alpha = splat(damp);
+                if own_damping > 0.0 {
+                    // That of its own kind.
+                    let same = |m: usize| {
+                        f64::from(u8::from(grains.phase[j[m] as usize] == grains.phase[i]))
+                    };
+                    alpha += splat(own_damping) * Four::gather(lanes, same);
+                }
+                let damping = alpha * mean_rho * along * to_f * geometric;
                 for k in 0..D {
                     force[k] += damping * g_ij[k];
                 }
@@ -156,7 +194,10 @@ impl<const D: usize> Solver<D> {
                     down += splat(self.gravity[k]) * g_ij[k];
                 }
                 let sum = splat(pressure) + pj;
-                let open = (gate * (splat(shear) + shear_j)).min(one);
+                let mut open = (gate * (splat(shear) + shear_j)).min(one);
+                if flows {
+                    open = open.max(Four::gather(lanes, |m| self.flows[j[m] as usize]));
+                }
                 // The hydrostatic part is taken out where there is a hydrostatic load to speak of.
                 let loaded = (sum * splat(head)).min(one);
                 let still = mean_rho * down * loaded;

@@ -25,6 +25,7 @@ fn numerics() -> Numerics {
         strain_relaxation_time: 0.05,
         pair_viscosity_share: 0.05,
         artificial_viscosity: 0.0,
+        shifting: 0.0,
         solver_tolerance: 3e-4,
         solver_max_iterations: 1000,
         sleep: false,

@@ -25,6 +25,7 @@ fn numerics() -> Numerics {
         strain_relaxation_time: 0.05,
         pair_viscosity_share: 0.05,
         artificial_viscosity: 0.0,
+        shifting: 0.0,
         solver_tolerance: 3e-4,
         solver_max_iterations: 500,
         sleep: false,
@@ -184,7 +185,7 @@ fn steps_agree<const D: usize>(geometry: Geometry, count: usize) {
         solver.upper = [1.0; D];
         for _ in 0..5 {
             solver
-                .step(&mut state, 1.0, &inputs, &mut |_, _, _| ())
+                .step(&mut state, 1.0, &inputs, &mut |_, _| ())
                 .unwrap();
         }
         state

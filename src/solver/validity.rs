@@ -12,7 +12,8 @@ const DENSE_LIMIT: f64 = 0.3;
 /// Rounding of viscosity times shear rate.
 const ROUNDING: f64 = 1e-9;
 
-/// Figures over the loaded mass, p > 0: material without pressure carries no stress, whatever its I. 0 without load.
+/// Figures over the loaded mass of what has friction, (effective) p > 0: without pressure it carries no stress, whatever its
+/// I. 0 without load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Validity {
     /// Share with I > 0.3 [1].
@@ -31,19 +32,23 @@ impl<const D: usize> Solver<D> {
         let grains = &state.grains;
         let (mut loaded, mut dilute, mut ill_posed) = (0.0, 0.0, 0.0);
         let (mut below, mut creep) = (0.0, 0.0);
-        for i in (0..grains.len()).filter(|&i| !grains.drained[i] && self.pressure[i] > 0.0) {
+        for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
+            let p = self.yield_pressure(i);
             let m = grains.mass[i];
             let material = &self.materials[grains.phase[i] as usize];
+            if p <= 0.0 || material.is_fluid() {
+                continue;
+            }
             loaded += m;
             if self.inertial_number[i] > DENSE_LIMIT {
                 dilute += m;
             }
             let shear = self.kinematics[i].shear;
             let stress = (1.0 + ROUNDING) * self.viscosity[i] * shear;
-            if self.is_ill_posed(material, i, stress) {
+            if self.is_ill_posed(material, i, p, stress) {
                 ill_posed += m;
             }
-            if stress < material.strength(self.pressure[i]) {
+            if stress < material.strength(p) {
                 below += m;
                 creep += m * shear * shear;
             }
@@ -56,8 +61,8 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    fn is_ill_posed(&self, material: &Material, i: usize, stress: f64) -> bool {
-        stress >= material.yield_stress(self.pressure[i])
+    fn is_ill_posed(&self, material: &Material, i: usize, p: f64, stress: f64) -> bool {
+        stress >= material.yield_stress(p)
             && ill_posedness(&material.law, self.inertial_number[i]) > 0.0
     }
 }

@@ -196,6 +196,11 @@ impl<const D: usize> Solver<D> {
                             b[r][c] *= f;
                         }
                         b[r][r] += state.grains.mass[i];
+                        if let Some(lean) = self.lean.get(i) {
+                            for c in 0..D {
+                                b[r][c] -= state.grains.mass[i] * lean[r][c];
+                            }
+                        }
                     }
                     *b = inverse(b);
                 }

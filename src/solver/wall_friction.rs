@@ -60,19 +60,19 @@ pub(super) struct Friction<const D: usize> {
 /// Share of a face's area that `spread` gives the direction across all faces, where it has none.
 const ACROSS: f64 = 1e-2;
 
-/// What a particle sees of walls, as far as it tells whether that is one flat face with friction.
+/// What a particle sees of walls, as far as it tells whether that is one flat face that lets it slide.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Face<const D: usize> {
     /// Nothing yet.
     None,
-    /// Points with friction and this normal only.
+    /// Points with free slip or friction and this normal only.
     Flat(Vector<D>),
     /// Something else, too.
     Other,
 }
 
 impl<const D: usize> Face<D> {
-    /// With one more point; `normal` if it has friction.
+    /// With one more point; `normal` if it lets material slide.
     pub(super) fn with(self, normal: Option<Vector<D>>) -> Self {
         match (self, normal) {
             (Face::None, Some(n)) => Face::Flat(n),
@@ -94,8 +94,8 @@ impl<const D: usize> Contact<D> {
 }
 
 impl<const D: usize> Solver<D> {
-    /// Adds a wall point to the contacts of row i, which begin at `first`; n the normal there, g = V_i w grad W. Says
-    /// whether the wall has friction.
+    /// Adds a wall point to the contacts of row i, which begin at `first`, if its wall has friction; n the normal there,
+    /// g = V_i w grad W.
     #[inline(always)]
     pub(super) fn touch(
         &self,
@@ -104,10 +104,10 @@ impl<const D: usize> Solver<D> {
         (i, wall): (usize, u32),
         n: &Vector<D>,
         g: &Vector<D>,
-    ) -> bool {
+    ) {
         let group = self.walls.group[wall as usize];
         if self.walls.groups[group as usize].friction == 0.0 {
-            return false;
+            return;
         }
         let area = -2.0 * dot(g, n) * self.volume[i] * self.width;
         let drive = scale(area, &self.walls.velocity[wall as usize]);
@@ -126,7 +126,6 @@ impl<const D: usize> Solver<D> {
                 drive,
             });
         }
-        true
     }
 
     /// Makes the friction rows of a step from the contacts of the last sweep.
@@ -208,7 +207,7 @@ impl<const D: usize> Solver<D> {
         );
         row.spread = inverse(&full);
         let slip = norm(&row.slip(v));
-        let pressure = self.normal_pressure()[row.i].max(0.0);
+        let pressure = self.effective_pressure()[row.i].max(0.0);
         let stick = friction.min(1.0) * self.numerics.cap_time / (0.5 * self.numerics.spacing);
         row.penalty = pressure * stick.min(0.1 * friction / slip.max(f64::MIN_POSITIVE));
         row
@@ -289,7 +288,7 @@ impl<const D: usize> Solver<D> {
     /// mu_w (p - n.tau n) >= 0 of a contact [Pa].
     fn friction_limit(&self, c: &Contact<D>, tau: &Tensor<D>) -> f64 {
         let pull = dot(&c.normal, &apply(tau, &c.normal));
-        let pressure = self.normal_pressure()[c.i as usize] - pull;
+        let pressure = self.effective_pressure()[c.i as usize] - pull;
         self.walls.groups[c.group as usize].friction * pressure.max(0.0)
     }
 

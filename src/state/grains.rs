@@ -11,6 +11,8 @@ pub struct Grains<const D: usize> {
     pub exact_yield: bool,
     /// Whether walls have Coulomb friction: `wall_traction` and `wall_slip` are kept.
     pub wall_friction: bool,
+    /// Whether a material is saturated: `pore_pressure` is kept.
+    pub saturated: bool,
     /// Position x [m].
     #[serde(with = "flat")]
     pub position: Vec<Vector<D>>,
@@ -42,6 +44,8 @@ pub struct Grains<const D: usize> {
     /// Slip velocity s along frictional walls that belongs to it [m/s]; empty without wall friction.
     #[serde(with = "flat")]
     pub wall_slip: Vec<Vector<D>>,
+    /// Pore pressure of the last seepage solve, the next one's first guess [Pa]; empty without saturated material.
+    pub pore_pressure: Vec<f64>,
     /// Position when the neighbour lists were built [m].
     #[serde(with = "flat")]
     pub listed: Vec<Vector<D>>,
@@ -66,6 +70,7 @@ macro_rules! for_each_field {
         $f(&mut $self.plastic_rate, $($extra)*);
         $f(&mut $self.wall_traction, $($extra)*);
         $f(&mut $self.wall_slip, $($extra)*);
+        $f(&mut $self.pore_pressure, $($extra)*);
         $f(&mut $self.listed, $($extra)*);
         $f(&mut $self.id, $($extra)*);
         $f(&mut $self.phase, $($extra)*);
@@ -110,6 +115,9 @@ impl<const D: usize> Grains<D> {
         if self.wall_friction {
             self.wall_traction.push([0.0; D]);
             self.wall_slip.push([0.0; D]);
+        }
+        if self.saturated {
+            self.pore_pressure.push(0.0);
         }
         self.listed.push(position);
         self.id.push(id);
@@ -170,6 +178,8 @@ impl<const D: usize> Grains<D> {
         lengths.iter().all(|&l| l == n)
             && [self.stress.len(), self.plastic_rate.len()] == kept(self.exact_yield)
             && [self.wall_traction.len(), self.wall_slip.len()] == kept(self.wall_friction)
+            && self.pore_pressure.len() == kept(self.saturated)[0]
+            && self.pore_pressure.iter().all(|p| p.is_finite())
             && self
                 .density
                 .iter()

@@ -68,6 +68,9 @@ fn material(material: &Material) -> String {
             mu_i(law.high()),
             law.joint()
         ),
+        Law::ConstantFriction(_) if material.is_fluid() => {
+            format!("fluid, {:.6} kg/m^3", material.rest_density())
+        }
         Law::ConstantFriction(law) => format!(
             "constant friction, mu {:.4}; {:.6} kg/m^3",
             law.mu,
@@ -75,7 +78,31 @@ fn material(material: &Material) -> String {
         ),
     };
     if material.cohesion > 0.0 {
-        text.push_str(&format!("; cohesion {:.4} Pa", material.cohesion));
+        let name = if material.is_fluid() {
+            "yield stress"
+        } else {
+            "cohesion"
+        };
+        text.push_str(&format!("; {name} {:.4} Pa", material.cohesion));
+    }
+    let viscous = &material.viscous;
+    if viscous.is_linear() && viscous.consistency > 0.0 {
+        text.push_str(&format!("; viscosity {} Pa s", viscous.consistency));
+    } else if viscous.consistency > 0.0 {
+        text.push_str(&format!(
+            "; {} Pa s^n with n = {}",
+            viscous.consistency, viscous.flow_index
+        ));
+    }
+    if material.is_saturated() {
+        text.push_str(&format!(
+            "; saturated by {} kg/m^3: {:.6} kg/m^3 in all",
+            grains.pore_density,
+            material.rest_density()
+        ));
+    }
+    if let Some(speed) = material.sound_speed {
+        text.push_str(&format!("; sound {speed} m/s"));
     }
     if material.bulk_friction > 0.0 {
         text.push_str(&format!("; bulk friction {}", material.bulk_friction));
@@ -148,6 +175,7 @@ fn gauge_kind(scene: &Scene, kind: &GaugeKind) -> String {
         },
         GaugeKind::Pressure { .. } => "pressure at a point".to_owned(),
         GaugeKind::Front { .. } => "front position".to_owned(),
+        GaugeKind::Mass { .. } => "mass in a box".to_owned(),
     }
 }
 
@@ -177,7 +205,16 @@ fn left_out(scene: &Scene) -> Vec<&'static str> {
         (scene.gauges.is_empty(), "gauges"),
         (scene.schedules.is_empty(), "input schedules"),
         (numerics.density_diffusion == 0.0, "density diffusion"),
-        (numerics.artificial_viscosity == 0.0, "artificial viscosity"),
+        (
+            numerics.artificial_viscosity == 0.0
+                && !scene
+                    .materials
+                    .iter()
+                    .any(|m| m.material.is_newtonian() && m.material.artificial_viscosity > 0.0),
+            "artificial viscosity",
+        ),
+        (numerics.shifting == 0.0, "shifting"),
+        (!scene.has_pore_pressure(), "pore pressure"),
         (numerics.pair_viscosity_share == 0.0, "pair viscosity"),
         (
             scene.log.particles_every == 0.0,

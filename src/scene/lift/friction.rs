@@ -112,6 +112,7 @@ impl Lift<'_> {
             density: density?,
             phi_max: phi_max.or(grains.map(|g| g.phi_max)).unwrap_or(0.6),
             phi_min: phi_min.or(grains.map(|g| g.phi_min)).unwrap_or(0.5),
+            pore_density: 0.0,
         };
         let angles = self.check_friction_order(table, keys, &law);
         let fractions = self.check_fraction_order(table, keys, &grains);

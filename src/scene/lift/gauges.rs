@@ -16,6 +16,7 @@ impl Lift<'_> {
             Some(Gauge {
                 name: entry.name.clone(),
                 kind: self.gauge(entry, gauge)?,
+                material: self.seen_material(gauge)?,
             })
         };
         entries.into_iter().filter_map(lift).collect()
@@ -43,7 +44,39 @@ impl Lift<'_> {
                 Some(GaugeKind::Pressure { at })
             }
             RawGauge::Front(raw) => self.front(raw),
+            RawGauge::Mass(raw) => {
+                let (lower, upper) = self.corners(raw.lower.as_ref(), raw.upper.as_ref())?;
+                Some(GaugeKind::Mass { lower, upper })
+            }
         }
+    }
+
+    /// The one material that a gauge sees, `Some(None)` for all; `None` where a problem was reported.
+    #[allow(
+        clippy::option_option,
+        reason = "the outer option is: no problem was reported"
+    )]
+    fn seen_material(&mut self, gauge: &RawGauge) -> Option<Option<usize>> {
+        let name = match gauge {
+            RawGauge::Depth(raw) => &raw.material,
+            RawGauge::Profile(raw) => &raw.material,
+            RawGauge::Discharge(raw) => &raw.material,
+            RawGauge::Pressure(raw) => &raw.material,
+            RawGauge::Front(raw) => &raw.material,
+            RawGauge::Mass(raw) => &raw.material,
+            RawGauge::Force(_) => &None,
+        };
+        let Some(name) = name else {
+            return Some(None);
+        };
+        let raw = self.raw;
+        self.index_of(
+            &name.value.0,
+            &name.place,
+            "materials",
+            raw.materials.as_ref(),
+        )
+        .map(Some)
     }
 
     fn depth(&mut self, raw: &RawDepth) -> Option<GaugeKind> {

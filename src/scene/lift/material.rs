@@ -3,22 +3,22 @@
 use super::Lift;
 use super::friction::{FrictionKeys, friction_keys};
 use crate::material::{
-    AngleMatch, BarkerGray, ConstantFriction, Grains, Law, Material, SAND_LAYER_FACTOR,
+    AngleMatch, BarkerGray, ConstantFriction, FLUID_PACKING, Grains, Law, Material,
+    SAND_LAYER_FACTOR, Viscous,
 };
 use crate::scene::raw::{
-    AngleMatchWord, At, Length, Place, Preset, Pressure, Ratio, RawBarkerGray, RawConstantFriction,
-    RawMaterial, RawMuI,
+    AngleMatchWord, At, FluidPreset, Length, Place, Preset, Pressure, Ratio, RawBarkerGray,
+    RawConstantFriction, RawFluid, RawMaterial, RawMuI, Speed, Text,
 };
 use crate::scene::types::NamedMaterial;
 
-/// Packing of a material whose grains a scene does not state: only says at which density it parts, phi_min/phi_max.
-const PHI: (f64, f64) = (0.5, 0.6);
-
-/// The keys that all materials have.
+/// The keys that all materials with friction have.
 struct CommonKeys<'a> {
     cohesion: &'a Option<At<Pressure>>,
     bulk_friction: &'a Option<At<Ratio>>,
     parted_density: &'a Option<At<Ratio>>,
+    pore_fluid: &'a Option<At<Text>>,
+    sound_speed: &'a Option<At<Speed>>,
 }
 
 macro_rules! common_keys {
@@ -27,6 +27,8 @@ macro_rules! common_keys {
             cohesion: &$raw.cohesion,
             bulk_friction: &$raw.bulk_friction,
             parted_density: &$raw.parted_density,
+            pore_fluid: &$raw.pore_fluid,
+            sound_speed: &$raw.sound_speed,
         }
     };
 }
@@ -43,6 +45,7 @@ impl Lift<'_> {
                 Some(RawMaterial::ConstantFriction(raw)) => {
                     self.constant_friction(&entry.place, raw)
                 }
+                Some(RawMaterial::Fluid(raw)) => self.fluid(&entry.place, raw),
                 None => None,
             };
             lifted.push(material.map(|material| NamedMaterial {
@@ -116,20 +119,114 @@ impl Lift<'_> {
         let kind = match raw.r#match.as_ref()?.value {
             AngleMatchWord::PlaneStrain => AngleMatch::PlaneStrain,
             AngleMatchWord::SimpleShear => AngleMatch::SimpleShear,
+            AngleMatchWord::Cone => AngleMatch::Cone,
         };
-        let (phi_min, phi_max) = PHI;
+        let (phi_min, phi_max) = FLUID_PACKING;
         let grains = Grains {
             diameter: 0.0,
             density: raw.density.as_ref()?.value.0 / phi_max,
             phi_max,
             phi_min,
+            pore_density: 0.0,
         };
         let law = Law::ConstantFriction(ConstantFriction::of_angle(angle, kind));
         let material = self.material(grains, law, &common_keys!(raw))?;
+        // Its density is the whole one, with what fills the pores: the grains' own follows.
+        let pore_density = material.grains.pore_density;
+        let density = (raw.density.as_ref()?.value.0 - (1.0 - phi_max) * pore_density) / phi_max;
+        if density <= pore_density {
+            self.problems.report(
+                &raw.density.as_ref()?.place,
+                format!("{} kg/m^3, saturated", raw.density.as_ref()?.value.0),
+                format!("more than that of its pore fluid, {pore_density} kg/m^3"),
+                "give the density of grains and pore fluid together",
+            );
+            return None;
+        }
         Some(Material {
             cohesion: ConstantFriction::cohesion_of(material.cohesion, angle, kind),
+            viscous: Viscous {
+                consistency: raw.consistency.as_ref()?.value.0,
+                flow_index: raw.flow_index.as_ref()?.value.0,
+            },
+            grains: Grains {
+                density,
+                ..material.grains
+            },
             ..material
         })
+    }
+
+    /// tau_0 + K gamma^n.
+    fn fluid(&mut self, table: &Place, raw: &RawFluid) -> Option<Material> {
+        let (density, viscous, yield_stress) = self.fluid_values(table, raw)?;
+        Some(Material {
+            sound_speed: raw.sound_speed.as_ref().map(|at| at.value.0),
+            parted_density: raw.parted_density.as_ref()?.value.0,
+            artificial_viscosity: raw.artificial_viscosity.as_ref()?.value.0,
+            ..Material::fluid(density, viscous, yield_stress)
+        })
+    }
+
+    /// Density, viscous stress and yield stress, from a preset and what a scene overrides.
+    fn fluid_values(&mut self, table: &Place, raw: &RawFluid) -> Option<(f64, Viscous, f64)> {
+        let preset = fluid_preset(raw);
+        let reported = |key| raw.given.contains(&key) || raw.given.contains(&"preset");
+        let density = raw.density.as_ref().map(|v| v.value.0);
+        let consistency = raw.consistency.as_ref().map(|v| v.value.0);
+        let missing = [("density", density), ("consistency", consistency)];
+        for (key, value) in missing {
+            if value.is_none() && preset.is_none() && !reported(key) {
+                self.problems.report(
+                    &table.child(key),
+                    "nothing, and no preset",
+                    "density and consistency, or a preset to take them from",
+                    format!("add {key}, or preset = \"water\""),
+                );
+            }
+        }
+        let index = raw.flow_index.as_ref().map(|v| v.value.0);
+        let yield_stress = raw.yield_stress.as_ref().map(|v| v.value.0);
+        Some((
+            density.or(preset.map(|p| p.0))?,
+            Viscous {
+                consistency: consistency.or(preset.map(|p| p.1.consistency))?,
+                flow_index: index.or(preset.map(|p| p.1.flow_index)).unwrap_or(1.0),
+            },
+            yield_stress.or(preset.map(|p| p.2)).unwrap_or(0.0),
+        ))
+    }
+
+    /// Density of the fluid that fills a material's pores [kg/m^3]; 0 for dry material, `None` where a problem was reported.
+    fn pore_density(&mut self, name: &Option<At<Text>>) -> Option<f64> {
+        let Some(name) = name else {
+            return Some(0.0);
+        };
+        let raw = self.raw;
+        let n = self.index_of(
+            &name.value.0,
+            &name.place,
+            "materials",
+            raw.materials.as_ref(),
+        )?;
+        let entry = raw.materials.as_ref()?.value.0.get(n)?;
+        match &entry.value {
+            // What is missing there is reported there.
+            Some(RawMaterial::Fluid(fluid)) => {
+                let given = fluid.density.as_ref().map(|v| v.value.0);
+                given.or(fluid_preset(fluid).map(|p| p.0))
+            }
+            Some(_) => {
+                self.problems.report(
+                    &name.place,
+                    format!("{}, which is no fluid", crate::units::quote(&name.value.0)),
+                    "the name of a material with law = \"fluid\"",
+                    "add for example [materials.water] with law = \"fluid\" and preset = \"water\"",
+                );
+                None
+            }
+            None => None,
+        }
     }
 
     fn material(&mut self, grains: Grains, law: Law, keys: &CommonKeys<'_>) -> Option<Material> {
@@ -144,12 +241,34 @@ impl Lift<'_> {
             );
             return None;
         }
+        let pore_density = self.pore_density(keys.pore_fluid)?;
         Some(Material {
-            grains,
+            grains: Grains {
+                pore_density,
+                ..grains
+            },
             law,
+            viscous: Viscous::NONE,
+            artificial_viscosity: 0.0,
+            sound_speed: keys.sound_speed.as_ref().map(|at| at.value.0),
             cohesion: keys.cohesion.as_ref()?.value.0,
             bulk_friction: keys.bulk_friction.as_ref()?.value.0,
             parted_density: parted.value.0,
         })
     }
+}
+
+/// Density [kg/m^3], viscous stress and yield stress [Pa] of a preset.
+pub(in crate::scene) fn fluid_preset(raw: &RawFluid) -> Option<(f64, Viscous, f64)> {
+    let preset = raw.preset.as_ref()?.value;
+    Some(match preset {
+        FluidPreset::Water => (1000.0, Viscous::newtonian(1e-3), 0.0),
+        FluidPreset::Clay => {
+            let viscous = Viscous {
+                consistency: 4.472,
+                flow_index: 0.472,
+            };
+            (1540.0, viscous, 30.0)
+        }
+    })
 }

@@ -25,6 +25,7 @@ use super::raw::{
 use super::types::{Dimension, Domain, NamedMaterial, Point, Scene};
 pub(super) use friction::values as preset_values;
 use geometry::Region;
+pub(super) use material::fluid_preset;
 
 /// The scene, or `None` if a problem was reported.
 pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Option<Scene> {

@@ -1,7 +1,7 @@
 //! Numerical choices: resolution against the bodies, and the sound speed if the file does not give it.
 
 use super::Lift;
-use crate::scene::raw::{Place, RawNumerics, YieldWord};
+use crate::scene::raw::{Place, RawMaterial, RawNumerics, YieldWord};
 use crate::scene::types::NamedMaterial;
 use crate::solver::{Numerics, YieldForm};
 
@@ -18,6 +18,7 @@ impl Lift<'_> {
         let sound_speed = self.sound_speed(raw, &table.place, materials);
         let scheme = self.scheme(raw, &table.place, materials);
         let yield_form = yield_form(raw)?;
+        self.check_own_sound_speeds(sound_speed?);
         Some(Numerics {
             spacing: raw.spacing.as_ref()?.value.0,
             smoothing_ratio: raw.smoothing_ratio.as_ref()?.value.0,
@@ -32,8 +33,19 @@ impl Lift<'_> {
             density_diffusion: raw.density_diffusion.as_ref()?.value.0,
             diffusion_gate_time: raw.diffusion_gate_time.as_ref()?.value.0,
             strain_relaxation_time: raw.strain_relaxation_time.as_ref()?.value.0,
-            pair_viscosity_share: raw.pair_viscosity_share.as_ref()?.value.0,
+            pair_viscosity_share: match &raw.pair_viscosity_share {
+                Some(given) => given.value.0,
+                None if materials
+                    .iter()
+                    .flatten()
+                    .all(|m| m.material.is_newtonian()) =>
+                {
+                    0.5
+                }
+                None => 0.05,
+            },
             artificial_viscosity: raw.artificial_viscosity.as_ref()?.value.0,
+            shifting: raw.shifting.as_ref()?.value.0,
             solver_tolerance: raw.solver_tolerance.as_ref()?.value.0,
             solver_max_iterations: u32::try_from(raw.solver_max_iterations.as_ref()?.value.0)
                 .unwrap_or(u32::MAX),
@@ -128,6 +140,28 @@ impl Lift<'_> {
             "add expected_speed, for example \"1 m/s\"",
         );
         None
+    }
+
+    /// Steps follow the scene's sound speed.
+    fn check_own_sound_speeds(&mut self, fastest: f64) {
+        let entries = self.raw.materials.as_ref().map(|m| &m.value.0);
+        for entry in entries.into_iter().flatten() {
+            let own = match &entry.value {
+                Some(RawMaterial::MuI(raw)) => &raw.sound_speed,
+                Some(RawMaterial::BarkerGray(raw)) => &raw.sound_speed,
+                Some(RawMaterial::ConstantFriction(raw)) => &raw.sound_speed,
+                Some(RawMaterial::Fluid(raw)) => &raw.sound_speed,
+                None => continue,
+            };
+            if let Some(own) = own.as_ref().filter(|own| own.value.0 > fastest) {
+                self.problems.report(
+                    &own.place,
+                    format!("{} m/s", own.value.0),
+                    format!("at most the scene's sound speed, {fastest} m/s"),
+                    "raise numerics.sound_speed, which bounds the step",
+                );
+            }
+        }
     }
 
     /// c0 = 1/sqrt(K_t rho_s0 phi_max), which must be one for all materials.

@@ -129,9 +129,22 @@ impl Lift<'_> {
         let raw = self.raw;
         let entries = raw.materials.iter().flat_map(|s| &s.value.0);
         for (entry, named) in entries.zip(materials) {
-            let rubs = |m: &NamedMaterial| m.material.bulk_friction > 0.0;
-            if named.as_ref().is_some_and(rubs) {
-                let what = "a material with bulk_friction";
+            let Some(NamedMaterial { material, .. }) = named else {
+                continue;
+            };
+            let unsupported = [
+                (
+                    material.bulk_friction > 0.0,
+                    "a material with bulk_friction",
+                ),
+                (material.is_fluid(), "a fluid"),
+                (material.is_saturated(), "a saturated material"),
+                (
+                    material.viscous.consistency > 0.0,
+                    "a material with viscosity",
+                ),
+            ];
+            for (_, what) in unsupported.into_iter().filter(|(found, _)| *found) {
                 self.problems.report(&entry.place, what, SUPPORTED, REMEDY);
             }
         }

@@ -6,6 +6,7 @@
 mod declare;
 mod dimension;
 mod groups;
+mod materials;
 mod range;
 mod read;
 mod sections;
@@ -13,13 +14,12 @@ mod values;
 
 pub(super) use dimension::DimensionWord;
 pub(super) use groups::{Coordinates, Entry, Gravity, List, Named, SeriesPoint};
+pub(super) use materials::*;
 pub(super) use read::{At, Place, Problems, nearest, read_document, syntax_place};
 pub(super) use sections::*;
-pub(super) use values::{Angle, Density, Length, Pressure, Ratio, Text};
+pub(super) use values::{Angle, Density, Length, Pressure, Ratio, Speed, Text, Viscosity};
 
 use declare::{choice, table, tagged};
 use range::Range;
 use read::{Field, KeySpec, Need, Node, refuse_unknown};
-use values::{
-    AngularSpeed, Compressibility, Flag, MassRate, Name, Speed, Time, Whole, choose, read_word,
-};
+use values::{AngularSpeed, Compressibility, Flag, MassRate, Name, Time, Whole, choose, read_word};

@@ -103,10 +103,12 @@ table! {
         optional diffusion_gate_time: Time, in Range::from(0.0), default "0.3 s";
         /// Relaxation time of the strain rate in the pressure law; 20 to 200 ms is useful.
         optional strain_relaxation_time: Time, in Range::above(0.0), default "50 ms";
-        /// Share of viscous stress carried pair by pair, against zero-energy modes.
-        optional pair_viscosity_share: Ratio, in Range::within(0.0, 1.0), default 0.05;
+        /// Share of viscous stress carried pair by pair, against zero-energy modes; left out: 0.05, or 0.5 in scenes of Newtonian fluids alone.
+        optional pair_viscosity_share: Ratio, in Range::within(0.0, 0.95);
         /// Artificial viscosity alpha.
         optional artificial_viscosity: Ratio, in Range::within(0.0, 10.0), default 0;
+        /// Factor on the shifting of fluid particles towards even spacing; 0 switches it off, 1 is the published strength. Particles of materials with friction are never shifted.
+        optional shifting: Ratio, in Range::within(0.0, 1.0), default 0;
         /// Relative tolerance of the viscous solve.
         optional solver_tolerance: Ratio, in Range::within(1e-14, 0.1), default 3e-4;
         /// Most iterations of a viscous solve.
@@ -137,120 +139,6 @@ choice! {
         "exact" => Exact,
         /// a very viscous fluid, which creeps at up to 1/cap_time
         "capped" => Capped,
-    }
-}
-
-tagged! {
-    /// A material: a law and its parameters.
-    RawMaterial by law {
-        "mu_i" => MuI(RawMuI),
-        "barker_gray" => BarkerGray(RawBarkerGray),
-        "constant_friction" => ConstantFriction(RawConstantFriction),
-    }
-}
-
-table! {
-    /// Dense granular flow, friction mu(I). Start from a preset and override what differs, or give every value.
-    RawMuI {
-        /// Values to start from.
-        optional preset: Preset;
-        /// Friction angle at vanishing shear rate; tan of it is mu_s.
-        optional static_friction_angle: Angle, in Range::above_to(0.0, 1.25);
-        /// Friction angle at large shear rate, not below the static one; tan of it is mu_2.
-        optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
-        /// Inertial number I0 at which friction is half way between the two.
-        optional inertial_number_scale: Ratio, in Range::above(0.0);
-        /// Growth of friction at large I: mu_inf I^2/(I0 + I) is added; 0 is none, 0.05 a published value.
-        optional high_inertia_friction: Ratio, in Range::within(0.0, 1.0), default 0;
-        /// Depth H of a thin layer of sand: I + layer_factor x grain_diameter/H stands in place of I. Left out: no correction.
-        optional layer_depth: Length, in Range::above(0.0);
-        /// Factor of the layer correction (2.61, that of sand, if left out; glass beads have none).
-        optional layer_factor: Ratio, in Range::above(0.0);
-        /// Grain diameter.
-        optional grain_diameter: Length, in Range::above(0.0);
-        /// Density of the grains' own material.
-        optional grain_density: Density, in Range::above(0.0);
-        /// Largest volume fraction of grains (0.6 if left out).
-        optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
-        /// Smallest volume fraction of grains that touch, below phi_max (0.5 if left out). Looser material has parted: it carries no stress until it is this dense again.
-        optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
-        /// Shear strength without pressure, added to friction. It is no tensile strength: material that is pulled parts.
-        optional cohesion: Pressure, in Range::from(0.0), default 0;
-        /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
-        optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
-        /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
-        optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
-    }
-}
-
-table! {
-    /// Friction mu(I) as Barker and Gray made it well-posed at low I: no yield stress, so that piles creep. Starts from
-    /// the values of mu(I).
-    RawBarkerGray {
-        /// Values to start from.
-        optional preset: Preset;
-        /// Friction angle at vanishing shear rate; tan of it is mu_s.
-        optional static_friction_angle: Angle, in Range::above_to(0.0, 1.25);
-        /// Friction angle at large shear rate, not below the static one; tan of it is mu_2.
-        optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
-        /// Inertial number I0 at which friction is half way between the two.
-        optional inertial_number_scale: Ratio, in Range::above(0.0);
-        /// Growth of friction at large I: mu_inf I^2/(I0 + I) is added.
-        optional high_inertia_friction: Ratio, in Range::within(0.0, 1.0), default 0.05;
-        /// Grain diameter.
-        optional grain_diameter: Length, in Range::above(0.0);
-        /// Density of the grains' own material.
-        optional grain_density: Density, in Range::above(0.0);
-        /// Largest volume fraction of grains (0.6 if left out).
-        optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
-        /// Smallest volume fraction of grains that touch, below phi_max (0.5 if left out). Looser material has parted: it carries no stress until it is this dense again.
-        optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
-        /// Shear strength without pressure, added to friction. It is no tensile strength: material that is pulled parts.
-        optional cohesion: Pressure, in Range::from(0.0), default 0;
-        /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
-        optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
-        /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
-        optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
-    }
-}
-
-table! {
-    /// Constant friction (Mohr-Coulomb, Drucker-Prager) at constant volume: no rate dependence, no dilatancy.
-    RawConstantFriction {
-        /// Mohr-Coulomb friction angle.
-        required friction_angle: Angle, in Range::within(0.0, 1.25);
-        /// How the angle becomes a friction coefficient.
-        optional r#match: AngleMatchWord, default "plane_strain";
-        /// Density of the material at rest, pores included.
-        required density: Density, in Range::above(0.0);
-        /// Mohr-Coulomb cohesion c. It is no tensile strength: material that is pulled parts.
-        optional cohesion: Pressure, in Range::from(0.0), default 0;
-        /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
-        optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
-        /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
-        optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
-    }
-}
-
-choice! {
-    /// Friction coefficient of an angle phi.
-    AngleMatchWord {
-        /// tau = c cos phi + p sin phi: Mohr-Coulomb's line in plane strain at constant volume
-        "plane_strain" => PlaneStrain,
-        /// tau = c + p tan phi: a layer that slips along its bed; phi is the angle of repose
-        "simple_shear" => SimpleShear,
-    }
-}
-
-choice! {
-    /// Measured materials.
-    Preset {
-        /// glass beads of 0.5 mm, 20.90 and 32.76 deg, I0 0.279, 2500 kg/m^3
-        "glass_beads" => GlassBeads,
-        /// sand of 0.8 mm, 27.00 and 43.40 deg, I0 1.09, 2600 kg/m^3
-        "sand_08" => Sand08,
-        /// sand of 0.4 mm, 30.50 and 51.30 deg, I0 2.65, 2600 kg/m^3
-        "sand_04" => Sand04,
     }
 }
 
@@ -439,6 +327,7 @@ tagged! {
         "force" => Force(RawForce),
         "pressure" => Pressure(RawPressure),
         "front" => Front(RawFront),
+        "mass" => Mass(RawMass),
     }
 }
 
@@ -451,6 +340,8 @@ table! {
         optional up: Coordinates<Ratio>;
         /// Length of the line; up to the domain's edge if left out.
         optional length: Length, in Range::above(0.0);
+        /// Only this material; all if left out.
+        optional material: Text;
     }
 }
 
@@ -467,6 +358,8 @@ table! {
         optional up: Coordinates<Ratio>;
         /// Length of the lines; up to the domain's edge if left out.
         optional length: Length, in Range::above(0.0);
+        /// Only this material; all if left out.
+        optional material: Text;
     }
 }
 
@@ -479,6 +372,8 @@ table! {
         required to: Coordinates<Length>;
         /// In space: the section's second edge, from `from`.
         optional span: Coordinates<Length>;
+        /// Only this material; all if left out.
+        optional material: Text;
     }
 }
 
@@ -495,6 +390,8 @@ table! {
     RawPressure {
         /// The point.
         required at: Coordinates<Length>;
+        /// Only this material; all if left out.
+        optional material: Text;
     }
 }
 
@@ -509,6 +406,20 @@ table! {
         required direction: Coordinates<Ratio>;
         /// Direction of depth, of any length; upwards along the last axis if left out.
         optional up: Coordinates<Ratio>;
+        /// Only this material; all if left out.
+        optional material: Text;
+    }
+}
+
+table! {
+    /// Mass of material in a box: what of a bed is still there.
+    RawMass {
+        /// Lower corner of the box.
+        required lower: Coordinates<Length>;
+        /// Upper corner of the box.
+        required upper: Coordinates<Length>;
+        /// Only this material; all if left out.
+        optional material: Text;
     }
 }
 

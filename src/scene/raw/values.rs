@@ -98,6 +98,8 @@ scalars! {
     Pressure => Quantity::Pressure;
     /// A compressibility [1/Pa].
     Compressibility => Quantity::Compressibility;
+    /// A viscosity, or a consistency [Pa s].
+    Viscosity => Quantity::Viscosity;
     /// A number \[1\].
     Ratio => Quantity::Ratio;
 }

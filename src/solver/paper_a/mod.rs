@@ -142,7 +142,7 @@ impl<const D: usize> Solver<D> {
                 *x += time * v;
             }
         }
-        on_move(&self.before, &grains.position, &grains.mass);
+        on_move(&self.before, grains);
         self.keep_inside(state)?;
         let walled = !self.walls.is_empty();
         if self

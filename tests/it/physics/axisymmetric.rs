@@ -151,7 +151,7 @@ until = 0.1
     };
     while state.time < 0.05 {
         solver
-            .step(&mut state, 0.05, &inputs, &mut |_, _, _| {})
+            .step(&mut state, 0.05, &inputs, &mut |_, _| {})
             .unwrap();
     }
     let (after, _, left) = sums(&state);

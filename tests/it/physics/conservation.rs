@@ -90,7 +90,7 @@ fn run(scene: &Scene, time: f64) -> (State<2>, State<2>) {
     };
     while state.time < time {
         solver
-            .step(&mut state, time, &inputs, &mut |_, _, _| {})
+            .step(&mut state, time, &inputs, &mut |_, _| {})
             .unwrap();
     }
     (start, state)

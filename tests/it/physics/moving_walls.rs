@@ -28,7 +28,7 @@ impl Bench {
         };
         while self.state.time < end - 1e-9 {
             self.solver
-                .step(&mut self.state, end, &inputs, &mut |_, _, _| {})
+                .step(&mut self.state, end, &inputs, &mut |_, _| {})
                 .unwrap();
         }
     }

@@ -58,9 +58,7 @@ fn advance(plan: Plan<2>, state: &mut State<2>, time: f64) -> u64 {
         rates: &[],
     };
     while state.time < time {
-        solver
-            .step(state, time, &inputs, &mut |_, _, _| {})
-            .unwrap();
+        solver.step(state, time, &inputs, &mut |_, _| {}).unwrap();
     }
     state.steps
 }

@@ -199,7 +199,7 @@ fn run(scene: &Scene, time: f64, look: &mut dyn FnMut(&Solver<2>, &State<2>)) {
     };
     while state.time < time {
         solver
-            .step(&mut state, time, &inputs, &mut |_, _, _| {})
+            .step(&mut state, time, &inputs, &mut |_, _| {})
             .unwrap();
         look(&solver, &state);
     }

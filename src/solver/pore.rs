@@ -1,0 +1,304 @@
+//! Pore pressure of saturated material (docs/theory.md, "Pore pressure"): steady seepage through a bed of even permeability,
+//! div (grad p_w - rho_w g) = 0, which is hydrostatic where nothing flows, whatever the bed's shape.
+//!
+//! p_w is the fluid's own pressure where a fluid touches the bed, 0 at a dry surface; nothing seeps through walls. What is
+//! left, p - p_w >= 0, presses grain on grain: the effective pressure, which friction is made of ([B] section 2 has a
+//! column's weight in its place, its eq. 10).
+//!
+//! Symbols: k_ij = 2 V_i V_j |F|; sum_j k_ij (p_i - p_j - rho_w g.x_ij) = 0, x_ij = x_i - x_j; Dirichlet rows: p_j of fluids.
+
+use crate::math::Vector;
+use crate::state::State;
+
+use super::Solver;
+use super::pair::Block;
+
+/// Share of the sum of |F| below which a particle is at a dry surface [1]: inside it is 1, at a flat surface 0.6.
+const SURFACE: f64 = 0.8;
+
+/// What the residual may be, over that of an error of a spacing's buoyant weight [1].
+const TOLERANCE: f64 = 1e-3;
+
+/// Most iterations in a step: the next goes on from there.
+const MOST_ITERATIONS: u32 = 200;
+
+/// Work arrays of the solve; empty in scenes without saturated material.
+#[derive(Debug, Default)]
+pub(super) struct Work {
+    /// sum_j k_ij and what a dry surface adds; 0 for what has no pores.
+    diagonal: Vec<f64>,
+    residual: Vec<f64>,
+    direction: Vec<f64>,
+    product: Vec<f64>,
+}
+
+/// What one row is made of.
+#[derive(Clone, Copy, Debug, Default)]
+struct Row {
+    /// sum_j k_ij over all neighbours, surface included.
+    diagonal: f64,
+    /// sum over fluids of k_ij p_j, and sum_j k_ij rho_w g.x_ij over all.
+    given: f64,
+    /// sum over saturated neighbours of k_ij p_j.
+    known: f64,
+}
+
+impl<const D: usize> Solver<D> {
+    /// Finds the pore pressure of the state's positions and densities, from the last one.
+    pub(super) fn seep(&mut self, state: &mut State<D>) {
+        if !self.has_pores {
+            return;
+        }
+        self.load_all(state);
+        let n = state.grains.len();
+        let mut work = std::mem::take(&mut self.pore);
+        for values in [
+            &mut work.diagonal,
+            &mut work.residual,
+            &mut work.direction,
+            &mut work.product,
+        ] {
+            values.resize(n, 0.0);
+        }
+        let mut pore = std::mem::take(&mut state.grains.pore_pressure);
+        let limit2 = self.start_seepage(state, &pore, &mut work);
+        self.iterate(state, &mut pore, &mut work, limit2);
+        state.grains.pore_pressure = pore;
+        self.pore = work;
+    }
+
+    /// Effective pressures from the pressures and the state's pore pressures.
+    pub(super) fn subtract_pore_pressure(&mut self, state: &State<D>) {
+        let grains = &state.grains;
+        let mut own = std::mem::take(&mut self.pore.residual);
+        own.resize(grains.len(), 0.0);
+        self.workers.each(&mut own, |i, p| {
+            let material = &self.materials[grains.phase[i] as usize];
+            *p = if material.is_saturated() {
+                self.pressure[i] - self.pore_pressure(state, i)
+            } else if material.is_fluid() {
+                0.0
+            } else {
+                self.pressure[i]
+            };
+        });
+        let mut effective = std::mem::take(&mut self.effective);
+        effective.resize(grains.len(), 0.0);
+        self.workers
+            .blocks_read(&self.lists.blocks, &mut effective, |block, first, out| {
+                for (row, p) in out.iter_mut().enumerate() {
+                    let i = first + row;
+                    *p = if self.is_porous(state, i) {
+                        self.smoothed(state, &own, block, row, i).max(0.0)
+                    } else {
+                        own[i]
+                    };
+                }
+            });
+        self.effective = effective;
+        self.pore.residual = own;
+    }
+
+    /// Mean of the effective pressures of a particle and its saturated neighbours, each carried to the particle's place with
+    /// the buoyant weight: the packing's own forces, which a bed at rest holds, are no friction.
+    fn smoothed(
+        &self,
+        state: &State<D>,
+        own: &[f64],
+        block: &Block<D>,
+        row: usize,
+        i: usize,
+    ) -> f64 {
+        let grains = &self.materials[state.grains.phase[i] as usize].grains;
+        let buoyant = grains.rest_density() - grains.pore_density;
+        // The particle's own cell counts as |F| at r = 0 does.
+        let own_weight = 2.0 * self.volume[i] * self.kernel.f(0.0).abs();
+        let (mut sum, mut weights) = (own_weight * own[i], own_weight);
+        block.for_each_pair(row, |j, k, g| {
+            if self.is_porous(state, j as usize) {
+                let mut down = 0.0;
+                for a in 0..D {
+                    down += self.gravity[a] * g[a];
+                }
+                // k x_ij = -2 g_ij.
+                sum += k * own[j as usize] - 2.0 * buoyant * down;
+                weights += k;
+            }
+        });
+        sum / weights
+    }
+
+    /// Pressure that presses grain on grain, or on a wall: that of the particle but for pores and fluids [Pa].
+    #[must_use]
+    pub fn effective_pressure(&self) -> &[f64] {
+        if self.effective.is_empty() {
+            self.normal_pressure()
+        } else {
+            &self.effective
+        }
+    }
+
+    fn is_porous(&self, state: &State<D>, i: usize) -> bool {
+        self.materials[state.grains.phase[i] as usize].is_saturated()
+    }
+
+    /// Diagonal and first residual; returns the square of what the residual may be.
+    fn start_seepage(&self, state: &State<D>, pore: &[f64], work: &mut Work) -> f64 {
+        let Work {
+            diagonal, residual, ..
+        } = work;
+        let mut rows = vec![Row::default(); diagonal.len()];
+        self.workers
+            .blocks_read(&self.lists.blocks, &mut rows, |block, first, out| {
+                for (row, o) in out.iter_mut().enumerate() {
+                    if self.is_porous(state, first + row) {
+                        *o = self.seepage_row(state, pore, block, row, first + row);
+                    }
+                }
+            });
+        for (i, row) in rows.iter().enumerate() {
+            diagonal[i] = row.diagonal;
+            residual[i] = row.given + row.known - row.diagonal * pore[i];
+        }
+        let head = TOLERANCE * self.gravity_norm * self.numerics.spacing;
+        let [limit2, given2] = self.workers.sums(rows.len(), |i| {
+            let grains = &self.materials[state.grains.phase[i] as usize].grains;
+            let buoyant = (grains.rest_density() - grains.pore_density).abs();
+            [
+                (rows[i].diagonal * head * buoyant).powi(2),
+                rows[i].given.powi(2),
+            ]
+        });
+        limit2.max(1e-24 * given2)
+    }
+
+    /// Sums of row i with pore pressures `pore`.
+    fn seepage_row(
+        &self,
+        state: &State<D>,
+        pore: &[f64],
+        block: &Block<D>,
+        row: usize,
+        i: usize,
+    ) -> Row {
+        let grains = &state.grains;
+        let rho_w = self.materials[grains.phase[i] as usize].grains.pore_density;
+        let volume = self.volume[i];
+        let mut sums = Row::default();
+        block.for_each_pair(row, |j, k, g| {
+            let j = j as usize;
+            let material = &self.materials[grains.phase[j] as usize];
+            let is_fluid = material.is_fluid();
+            if !is_fluid && !material.is_saturated() {
+                return;
+            }
+            let mut down = 0.0;
+            for a in 0..D {
+                down += self.gravity[a] * g[a];
+            }
+            let k = volume * k;
+            sums.diagonal += k;
+            // k_ij x_ij = -2 V_i g_ij.
+            sums.given -= 2.0 * volume * rho_w * down;
+            if is_fluid {
+                sums.given += k * self.pressure[j];
+            } else {
+                sums.known += k * pore[j];
+            }
+        });
+        if sums.diagonal > 0.0 {
+            sums.diagonal +=
+                self.surface_conductance(&grains.position[i], (block, row, i), sums.diagonal);
+        }
+        sums
+    }
+
+    /// What joins a particle at a dry surface to the air's pressure, 0.
+    fn surface_conductance(
+        &self,
+        x: &Vector<D>,
+        (block, row, i): (&Block<D>, usize, usize),
+        inside: f64,
+    ) -> f64 {
+        let h = self.kernel.h;
+        // The integral of 2 |F| is 7/h^2 in the plane and in space; the particle's own cell takes its share.
+        let own = 2.0 * self.volume[i] * self.kernel.f(0.0).abs();
+        let full = self.volume[i] * (7.0 / (h * h) - own).max(0.0);
+        if inside >= SURFACE * full {
+            return 0.0;
+        }
+        let mut filled = inside;
+        for &wall in block.wall_row(row) {
+            let (_, r) = self.wall_offset(x, wall);
+            let weight = self.walls.weight[wall as usize];
+            if r < self.kernel.support() && weight > 0.0 {
+                let seen = self.wall_volume(i, wall, weight);
+                filled += 2.0 * self.volume[i] * seen * self.kernel.f(r).abs();
+            }
+        }
+        (SURFACE * full - filled).max(0.0)
+    }
+
+    /// Conjugate gradients with the diagonal.
+    fn iterate(&self, state: &State<D>, pore: &mut [f64], work: &mut Work, limit2: f64) {
+        let Work {
+            diagonal,
+            residual,
+            direction,
+            product,
+        } = work;
+        let n = pore.len();
+        let over = |i: usize, r: f64| {
+            if diagonal[i] > 0.0 {
+                r / diagonal[i]
+            } else {
+                0.0
+            }
+        };
+        let scalar = |i: usize, r: &[f64]| [r[i] * r[i], r[i] * over(i, r[i])];
+        let [mut norm2, mut rz] = self.workers.sums(n, |i| scalar(i, residual));
+        let mut beta = 0.0;
+        for _ in 0..MOST_ITERATIONS {
+            if norm2 <= limit2 || rz <= 0.0 {
+                return;
+            }
+            let r = &*residual;
+            self.workers
+                .each(direction, |i, d| *d = over(i, r[i]) + beta * *d);
+            let d = &*direction;
+            let curvature =
+                self.workers
+                    .blocks_sum(&self.lists.blocks, product, |block, first, out| {
+                        let mut sum = 0.0;
+                        for (row, o) in out.iter_mut().enumerate() {
+                            let i = first + row;
+                            *o = 0.0;
+                            if diagonal[i] > 0.0 {
+                                let mut q = diagonal[i] * d[i];
+                                let volume = self.volume[i];
+                                block.for_each_pair(row, |j, k, _| {
+                                    if self.is_porous(state, j as usize) {
+                                        q -= volume * k * d[j as usize];
+                                    }
+                                });
+                                *o = q;
+                                sum += d[i] * q;
+                            }
+                        }
+                        sum
+                    });
+            if !(curvature > 0.0) {
+                return;
+            }
+            let step = rz / curvature;
+            let q = &*product;
+            self.workers.both(pore, residual, |i, p, r| {
+                *p += step * d[i];
+                *r -= step * q[i];
+                []
+            });
+            let [next2, next] = self.workers.sums(n, |i| scalar(i, residual));
+            (norm2, beta, rz) = (next2, next / rz, next);
+        }
+    }
+}
