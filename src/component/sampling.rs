@@ -4,14 +4,19 @@
 //! gauges read the impulses that devices gathered. Order of readings: the scene's.
 
 use super::engine::Devices;
-use crate::gauge::{self, Crossing, DepthLine, Field, Front, PressureProbe, Profile, Reading};
+use crate::gauge::{
+    self, Crossing, DepthLine, Field, Front, MassBox, PressureProbe, Profile, Reading,
+};
 use crate::gauge::{Validity, View};
 use crate::scene::{ForceTarget, Gauge, GaugeKind, Point, Scene};
+use crate::state::Grains;
 
 /// All gauges of a scene in D dimensions.
 #[derive(Clone, Debug)]
 pub(crate) struct Sampler<const D: usize> {
     gauges: Vec<Kind<D>>,
+    /// The one material that each gauge sees, if not all.
+    materials: Vec<Option<u8>>,
 }
 
 #[derive(Clone, Debug)]
@@ -33,7 +38,11 @@ impl<const D: usize> Sampler<D> {
             domain.periodic[a].then_some(domain.upper[a] - domain.lower[a])
         });
         let gauges = scene.gauges.iter().map(|g| kind(g, &period)).collect();
-        Self { gauges }
+        let materials = scene.gauges.iter().map(|g| g.material.map(|m| m as u8));
+        Self {
+            gauges,
+            materials: materials.collect(),
+        }
     }
 
     /// A communication step begins.
@@ -52,16 +61,25 @@ impl<const D: usize> Sampler<D> {
             .any(|g| matches!(g, Kind::Discharge { .. }))
     }
 
-    /// Counts the particles that crossed sections in one internal step: the same particles in the same order in
-    /// all three slices, positions [m] and masses [kg].
-    pub(crate) fn count(&mut self, before: &[[f64; D]], after: &[[f64; D]], mass: &[f64]) {
-        for gauge in &mut self.gauges {
+    /// Counts the particles that crossed sections in one internal step; `before` holds their positions then [m].
+    pub(crate) fn count(&mut self, before: &[[f64; D]], grains: &Grains<D>) {
+        for (gauge, material) in self.gauges.iter_mut().zip(&self.materials) {
             if let Kind::Discharge { section, .. } = gauge {
-                for ((from, to), mass) in before.iter().zip(after).zip(mass) {
-                    section.add(from, to, *mass);
+                for (i, from) in before.iter().enumerate() {
+                    if material.is_none_or(|m| m == grains.phase[i]) {
+                        section.add(from, &grains.position[i], grains.mass[i]);
+                    }
                 }
             }
         }
+    }
+
+    /// Materials that some gauge sees alone, each once; and `None` if some gauge sees all.
+    pub(crate) fn seen(&self) -> Vec<Option<u8>> {
+        let mut seen: Vec<Option<u8>> = self.materials.clone();
+        seen.sort_unstable();
+        seen.dedup();
+        seen
     }
 
     /// Mass that crossed each discharge gauge since the start [kg]: part of the saved state.
@@ -89,17 +107,23 @@ impl<const D: usize> Sampler<D> {
         true
     }
 
-    /// Readings of all gauges; `step` is the length of the last communication step [s], 0 before the first.
-    pub(crate) fn sample(&self, view: &View<D>, devices: &Devices, step: f64) -> Vec<Reading> {
-        let read = |gauge: &Kind<D>| match gauge {
-            Kind::Field(field) => gauge::sample(field, view),
-            Kind::Discharge { section, .. } if view.is_outside(&section.centre()) => {
+    /// Readings of all gauges; `view` shows one material, or all. `step` is the length of the last communication step [s],
+    /// 0 before the first.
+    pub(crate) fn sample<'v>(
+        &self,
+        view: impl Fn(Option<u8>) -> View<'v, D>,
+        devices: &Devices,
+        step: f64,
+    ) -> Vec<Reading> {
+        let read = |(gauge, material): (&Kind<D>, &Option<u8>)| match gauge {
+            Kind::Field(field) => gauge::sample(field, &view(*material)),
+            Kind::Discharge { section, .. } if view(*material).is_outside(&section.centre()) => {
                 Reading::none(2, Validity::Outside)
             }
             Kind::Discharge { section, before } => discharge(section, *before, step),
             Kind::Force(target) => force::<D>(*target, devices, step),
         };
-        self.gauges.iter().map(read).collect()
+        self.gauges.iter().zip(&self.materials).map(read).collect()
     }
 
     /// As [`Sampler::sample`] of particles that have not moved since `still` was sampled.
@@ -165,6 +189,10 @@ fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
         },
         GaugeKind::Force { on } => Kind::Force(*on),
         GaugeKind::Pressure { at } => Kind::Field(Field::Pressure(PressureProbe { at: flat(at) })),
+        GaugeKind::Mass { lower, upper } => Kind::Field(Field::Mass(MassBox {
+            lower: flat(lower),
+            upper: flat(upper),
+        })),
         GaugeKind::Front {
             origin,
             direction,

@@ -21,6 +21,15 @@ struct Saved<const D: usize> {
     crossed: Vec<f64>,
 }
 
+/// Particles that gauges see: of one material, or all.
+struct Shown<const D: usize> {
+    position: Vec<Vector<D>>,
+    mass: Vec<f64>,
+    density: Vec<f64>,
+    pressure: Vec<f64>,
+    cells: CellGrid<D>,
+}
+
 struct Simulation<const D: usize> {
     state: State<D>,
     solver: Solver<D>,
@@ -75,6 +84,24 @@ impl<const D: usize> Simulation<D> {
         Ok(simulation)
     }
 
+    /// Particles of a material, or all. Grains that an outflow has taken stay in the arrays until lists are rebuilt; gauges do
+    /// not see them.
+    fn show(&self, material: Option<u8>) -> Shown<D> {
+        let grains = &self.state.grains;
+        let is_seen =
+            |i: &usize| !grains.drained[*i] && material.is_none_or(|m| m == grains.phase[*i]);
+        let seen: Vec<usize> = (0..grains.len()).filter(is_seen).collect();
+        let pick = |values: &[f64]| -> Vec<f64> { seen.iter().map(|&i| values[i]).collect() };
+        let position: Vec<Vector<D>> = seen.iter().map(|&i| grains.position[i]).collect();
+        Shown {
+            cells: self.cells(&position),
+            position,
+            mass: pick(&grains.mass),
+            density: pick(&grains.density),
+            pressure: pick(self.solver.pressure()),
+        }
+    }
+
     fn refresh_devices(&mut self) {
         let state = &self.state;
         let (walls, gates) = state.impulse.split_at(self.walls);
@@ -126,9 +153,9 @@ impl<const D: usize> Simulation<D> {
                 openings: &openings,
                 rates: &rates,
             },
-            &mut |before, after, mass| {
+            &mut |before, grains| {
                 if counts {
-                    sampler.count(before, after, mass);
+                    sampler.count(before, grains);
                 }
             },
         )?;
@@ -236,7 +263,6 @@ impl<const D: usize> Engine for Simulation<D> {
         if let Some(still) = self.still.get() {
             return self.sampler.sample_still(still, &self.devices, step);
         }
-        let grains = &self.state.grains;
         let walls = self.solver.walls();
         let solid: Vec<Vector<D>> = walls
             .position
@@ -245,27 +271,33 @@ impl<const D: usize> Engine for Simulation<D> {
             .filter(|(_, w)| **w > 0.5)
             .map(|(x, _)| *x)
             .collect();
-        // Grains that an outflow has taken stay in the arrays until lists are rebuilt; gauges do not see them.
-        let present: Vec<usize> = (0..grains.len()).filter(|&i| !grains.drained[i]).collect();
-        let pick = |values: &[f64]| -> Vec<f64> { present.iter().map(|&i| values[i]).collect() };
-        let position: Vec<Vector<D>> = present.iter().map(|&i| grains.position[i]).collect();
-        let cells = self.cells(&position);
         let solid = self.cells(&solid);
-        let view = View {
-            position: &position,
-            mass: &pick(&grains.mass),
-            density: &pick(&grains.density),
-            pressure: &pick(self.solver.pressure()),
-            cells: &cells,
-            solid: &solid,
-            spacing: self.spacing,
-            kernel: *self.solver.kernel(),
-            geometry: self.geometry,
-            lower: self.lower,
-            upper: self.upper,
-            periodic: self.periodic.map(|p| p.is_some()),
+        let shown: Vec<(Option<u8>, Shown<D>)> = self
+            .sampler
+            .seen()
+            .into_iter()
+            .map(|material| (material, self.show(material)))
+            .collect();
+        let view = |material: Option<u8>| {
+            // Every material that a gauge sees is shown.
+            let place = shown.iter().position(|(m, _)| *m == material);
+            let shown = &shown[place.unwrap_or(0)].1;
+            View {
+                position: &shown.position,
+                mass: &shown.mass,
+                density: &shown.density,
+                pressure: &shown.pressure,
+                cells: &shown.cells,
+                solid: &solid,
+                spacing: self.spacing,
+                kernel: *self.solver.kernel(),
+                geometry: self.geometry,
+                lower: self.lower,
+                upper: self.upper,
+                periodic: self.periodic.map(|p| p.is_some()),
+            }
         };
-        let readings = self.sampler.sample(&view, &self.devices, step);
+        let readings = self.sampler.sample(view, &self.devices, step);
         if self.state.rest.asleep {
             self.still.get_or_init(|| readings.clone());
         }

@@ -9,6 +9,7 @@
 mod crossing;
 mod depth;
 mod front;
+mod mass;
 mod pressure;
 mod profile;
 mod view;
@@ -16,6 +17,7 @@ mod view;
 pub use crossing::Crossing;
 pub use depth::DepthLine;
 pub use front::Front;
+pub use mass::MassBox;
 pub use pressure::PressureProbe;
 pub use profile::Profile;
 pub use view::View;
@@ -87,6 +89,8 @@ pub enum Field<const D: usize> {
     Pressure(PressureProbe<D>),
     /// Two values: front and 99.5 % mass quantile [m].
     Front(Front<D>),
+    /// One value: mass in a box [kg].
+    Mass(MassBox<D>),
 }
 
 /// Samples a gauge.
@@ -97,6 +101,7 @@ pub fn sample<const D: usize>(gauge: &Field<D>, view: &View<D>) -> Reading {
         Field::Profile(profile) => profile.sample(view),
         Field::Pressure(probe) => probe.sample(view),
         Field::Front(front) => front.sample(view),
+        Field::Mass(counted) => counted.sample(view),
     }
 }
 

@@ -77,6 +77,11 @@ impl<const D: usize> View<'_, D> {
         self.for_each_near(self.cells, at, |j, _, r| visit(j, r));
     }
 
+    /// As [`View::for_each_particle`], with the particle's place [m] between them.
+    pub fn for_each_particle_at(&self, at: &[f64; D], visit: impl FnMut(usize, [f64; D], f64)) {
+        self.for_each_near(self.cells, at, visit);
+    }
+
     /// Shepard sum of the material, sum_j V_j W(|x - x_j|) [1].
     #[must_use]
     pub fn material_sum(&self, at: &[f64; D]) -> f64 {

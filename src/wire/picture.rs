@@ -159,6 +159,18 @@ impl Artist<'_> {
                 let step = 4.0 * self.scene.numerics.spacing;
                 (vec![*origin, end(*origin, *direction, step)], Some(*origin))
             }
+            GaugeKind::Mass { lower, upper } => {
+                let [l, u] = [*lower, *upper];
+                let corner = |x, y| [x, y, l[2]];
+                let around = vec![
+                    corner(l[0], l[1]),
+                    corner(u[0], l[1]),
+                    corner(u[0], u[1]),
+                    corner(l[0], u[1]),
+                    corner(l[0], l[1]),
+                ];
+                (around, Some(*lower))
+            }
             // A force gauge is on a wall or gate that is drawn already.
             GaugeKind::Force { .. } => (Vec::new(), None),
         };

@@ -277,13 +277,15 @@ fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
         let extent = |a: usize| (domain.upper[a] - domain.lower[a]) * up[a].abs();
         (0..scene.dimension.axes()).map(extent).sum()
     };
+    let seen = gauge.material.map(|m| &scene.materials[m].name);
+    let of = seen.map_or(String::new(), |name| format!(" (of {name} alone)"));
     let reading = |suffix: &str, unit: &'static str, first: usize, text: &str| {
         let source = Source::Reading { gauge: i, first };
         Row::output(
             format!("gauge.{name}.{suffix}"),
             unit,
             source,
-            format!("{text} at gauge {name}"),
+            format!("{text}{of} at gauge {name}"),
         )
     };
     let mut rows = match &gauge.kind {
@@ -350,6 +352,7 @@ fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
         GaugeKind::Pressure { .. } => {
             vec![reading("pressure", "Pa", 0, "pressure of the material")]
         }
+        GaugeKind::Mass { .. } => vec![reading("mass", "kg", 0, "mass in the box")],
         GaugeKind::Front { .. } => vec![
             reading(
                 "front",

@@ -202,6 +202,17 @@ fn draw_gauge(svg: &mut Svg<'_>, gauge: &Gauge, scene: &Scene) {
             dot(svg, at, &title("pressure at this point"));
             at
         }
+        GaugeKind::Mass { lower, upper } => {
+            let corner = |x: f64, y: f64| view.place([x, y, lower[2]]);
+            let corners = [
+                corner(lower[0], lower[1]),
+                corner(upper[0], lower[1]),
+                corner(upper[0], upper[1]),
+                corner(lower[0], upper[1]),
+            ];
+            svg.line(&corners, true, &style, &title("mass in this box"));
+            corners[0]
+        }
         GaugeKind::Front {
             origin, direction, ..
         } => {
