@@ -101,6 +101,24 @@ fn the_fingerprint_is_that_of_the_text() {
     );
 }
 
+#[test]
+fn the_cases_of_several_phases_load_and_are_listed() {
+    let list = fs::read_to_string(root().join("cases/README.md")).unwrap();
+    let files = toml_files("cases/phases");
+    assert_eq!(files.len(), 9);
+    for path in &files {
+        let scene = scene::load(path).unwrap_or_else(|e| panic!("{e}"));
+        let stem = path.file_stem().unwrap().to_str().unwrap();
+        assert_eq!(scene.name, stem);
+        let listed = list.contains(&format!("`phases/{stem}`"));
+        assert!(
+            listed || stem.starts_with("silted_dam"),
+            "{stem} is not listed"
+        );
+        scene::build::<2>(&scene).unwrap_or_else(|e| panic!("{stem}: {e}"));
+    }
+}
+
 /// Paper A's own cases are as printed in its Tables 2 and 3: K_t, tau_0 and m_0 become what the solver takes.
 #[test]
 fn the_cases_of_paper_a_load_and_are_what_its_tables_say() {
