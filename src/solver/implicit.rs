@@ -106,6 +106,7 @@ impl<const D: usize> Solver<D> {
             }
             YieldForm::Exact { iterations } => {
                 let mut spent = 0;
+                self.cut_stress(state);
                 for _ in 0..iterations {
                     self.fix_plastic_stress(state, work);
                     self.hold_friction(state, &mut work.held);

@@ -16,6 +16,9 @@ use crate::state::State;
 use super::Solver;
 use super::implicit::Viscous;
 
+/// How much more stress than it bears a particle may start a step with: no more than the pressure's own swing is lost.
+pub(super) const SPARE: f64 = 2.0;
+
 impl<const D: usize> Solver<D> {
     /// lambda - r q, what the next linear solve takes as given.
     pub(super) fn fix_plastic_stress(&self, state: &State<D>, work: &mut Viscous<D>) {
@@ -27,6 +30,25 @@ impl<const D: usize> Solver<D> {
                 for b in 0..D {
                     t[a][b] = lambda[i][a][b] - r * q[i][a][b];
                 }
+            }
+        });
+    }
+
+    /// Cuts the stress that a step starts from to [`SPARE`] times what this step's pressure bears at the last plastic rate.
+    ///
+    /// Where the pressure has fallen far, so has r; the excess of the old stress would make q = (|x| - tau)/r a rate that no
+    /// material has, and r q a stress out of all bounds when the pressure returns. What is less than that stays: it makes
+    /// up for pressures that rise and fall from step to step.
+    pub(super) fn cut_stress(&self, state: &mut State<D>) {
+        let grains = &mut state.grains;
+        let (q, phase) = (&grains.plastic_rate, &grains.phase);
+        self.workers.each(&mut grains.stress, |i, lambda| {
+            let material = &self.materials[phase[i] as usize];
+            let rate = self.geometry.size(&q[i]);
+            let most = material.shear_stress(rate, self.pressure[i], self.kinematics[i].correction);
+            let (size, most) = (self.geometry.size(lambda), SPARE * most);
+            if size > most {
+                *lambda = lambda.map(|row| scale(most / size, &row));
             }
         });
     }

@@ -16,6 +16,7 @@ use crate::state::State;
 
 use super::Solver;
 use super::implicit::Viscous;
+use super::plastic::SPARE;
 use super::record::Record;
 
 /// A face with friction, as one particle sees it.
@@ -265,24 +266,37 @@ impl<const D: usize> Solver<D> {
                 continue;
             }
             let slip = row.slip(&work.current[i].velocity());
-            let t = &grains.wall_traction[i];
-            let x: Vector<D> = std::array::from_fn(|k| t[k] + row.penalty * slip[k]);
-            let mut beyond = [0.0; D];
             let tau = work.stress(i);
-            for c in &self.friction.contacts[row.range.clone()] {
-                let along = c.along(&x);
-                let size = norm(&along);
-                let most = self.friction_limit(c, &tau);
-                if size > most {
-                    for k in 0..D {
-                        beyond[k] += c.area * (1.0 - most / size) * along[k];
-                    }
-                }
-            }
-            let cut = apply(&row.spread, &beyond);
+            // What the last step's pressure bore and this one's does not by far is no slip (see `cut_stress`).
+            let t = &grains.wall_traction[i];
+            let t = sub(t, &self.beyond(row, t, &tau, SPARE));
+            let x: Vector<D> = std::array::from_fn(|k| t[k] + row.penalty * slip[k]);
+            let cut = self.beyond(row, &x, &tau, 1.0);
             grains.wall_traction[i] = sub(&x, &cut);
             grains.wall_slip[i] = scale(1.0 / row.penalty, &cut);
         }
+    }
+
+    /// What of a traction x is beyond so many times what the contacts of a row bear [Pa].
+    fn beyond(
+        &self,
+        row: &FrictionRow<D>,
+        x: &Vector<D>,
+        tau: &Tensor<D>,
+        times: f64,
+    ) -> Vector<D> {
+        let mut beyond = [0.0; D];
+        for c in &self.friction.contacts[row.range.clone()] {
+            let along = c.along(x);
+            let size = norm(&along);
+            let most = times * self.friction_limit(c, tau);
+            if size > most {
+                for k in 0..D {
+                    beyond[k] += c.area * (1.0 - most / size) * along[k];
+                }
+            }
+        }
+        apply(&row.spread, &beyond)
     }
 
     /// mu_w (p - n.tau n) >= 0 of a contact [Pa].
