@@ -9,4 +9,6 @@ mod points;
 
 pub use mover::{Mover, RigidMotion};
 pub use plate::Plate;
-pub use points::{GroupSpec, ROWS, WallPoints, box_points, plane_points, polyline_points};
+pub use points::{
+    GroupSpec, ROWS, WallPoints, box_points, joined_points, plane_points, polyline_points,
+};

@@ -125,6 +125,18 @@ pub fn polyline_points(
     closed: bool,
     spacing: f64,
 ) -> Vec<([f64; 2], [f64; 2], f64)> {
+    joined_points(corners, closed, [None; 2], spacing)
+}
+
+/// As [`polyline_points`] of an open polyline whose ends other ones go on from: `joints` are the directions in which another
+/// arrives at its first point and leaves its last one. There it is mitred like at its own corners.
+#[must_use]
+pub fn joined_points(
+    corners: &[[f64; 2]],
+    closed: bool,
+    joints: [Option<[f64; 2]>; 2],
+    spacing: f64,
+) -> Vec<([f64; 2], [f64; 2], f64)> {
     let n = corners.len();
     let segments = if closed { n } else { n - 1 };
     let tangent = |s: usize| {
@@ -140,12 +152,12 @@ pub fn polyline_points(
             let before = if c > 0 || closed {
                 Some(tangent((c + segments - 1) % segments))
             } else {
-                None
+                joints[0]
             };
             let after = if c < segments || closed {
                 Some(tangent(c % segments))
             } else {
-                None
+                joints[1]
             };
             let corner = &corners[c % n];
             match (before, after) {
@@ -165,8 +177,8 @@ pub fn polyline_points(
             let (a, b) = (moved(s), moved(s + 1));
             let t = tangent(s);
             let length = dot(&sub(&b, &a), &t);
-            let free_start = s == 0 && !closed;
-            let free_end = s + 1 == segments && !closed;
+            let free_start = s == 0 && !closed && joints[0].is_none();
+            let free_end = s + 1 == segments && !closed && joints[1].is_none();
             // Half a spacing is left out at a free end; a joint's point belongs to the segment that starts there.
             let ends = 0.5 * (f64::from(u8::from(free_start)) + f64::from(u8::from(free_end)));
             let count = (length / spacing + 1.0 - ends).round();
@@ -318,6 +330,25 @@ mod tests {
         }
         // 10 along each leg in 4 rows, and the 4 x 4 corner.
         assert_eq!(points.len(), 4 * 10 * 2 + 16);
+    }
+
+    /// A floor that is one wall and a side that is another make the corner that one wall of both makes.
+    #[test]
+    fn two_walls_that_meet_make_a_whole_corner() {
+        let sorted = |mut points: Vec<[f64; 2]>| {
+            points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+            points
+        };
+        let (side, floor) = ([[0.0, 1.0], [0.0, 0.0]], [[0.0, 0.0], [1.0, 0.0]]);
+        let one = polyline_points(&[side[0], side[1], floor[1]], false, 0.1);
+        let one = sorted(one.into_iter().map(|p| p.0).collect());
+        let mut two = joined_points(&side, false, [None, Some([1.0, 0.0])], 0.1);
+        two.extend(joined_points(&floor, false, [Some([0.0, -1.0]), None], 0.1));
+        let two = sorted(two.into_iter().map(|p| p.0).collect());
+        assert_eq!(one.len(), two.len());
+        for (a, b) in one.iter().zip(&two) {
+            assert!(norm(&sub(a, b)) < 1e-12, "{a:?} {b:?}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Scene to what the solver runs: particles, wall points, devices. The last function that knows scenes.
 
 use crate::boundary::{
-    GroupSpec, Mover, Plate, RigidMotion, WallPoints, box_points, plane_points, polyline_points,
+    GroupSpec, Mover, Plate, RigidMotion, WallPoints, box_points, joined_points, plane_points,
 };
 use crate::math::{Geometry, Vector, add, dot, norm, scale};
 use crate::shape::lattice;
@@ -255,6 +255,41 @@ fn group(scene: &Scene, slip: Slip, moves: bool, target: ForceTarget) -> GroupSp
     }
 }
 
+/// Directions in which other walls arrive at the first point of an open polyline and leave its last: walls that meet make a
+/// whole corner. Walls that move as a whole take no part, their neighbours would have to change shape.
+fn joints(scene: &Scene, wall: usize) -> [Option<[f64; 2]>; 2] {
+    let open = |n: usize| match &scene.walls[n] {
+        Wall {
+            geometry:
+                WallGeometry::Polyline {
+                    points,
+                    closed: false,
+                },
+            rigid: false,
+            ..
+        } => Some(points),
+        _ => None,
+    };
+    let Some(own) = open(wall) else {
+        return [None; 2];
+    };
+    let others = (0..scene.walls.len()).filter(|n| *n != wall);
+    let others: Vec<&Vec<[f64; 2]>> = others.filter_map(open).collect();
+    let eps = 1e-6 * scene.numerics.spacing;
+    let same = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < eps;
+    let way = |a: &[f64; 2], b: &[f64; 2]| {
+        let d = [b[0] - a[0], b[1] - a[1]];
+        scale(1.0 / norm(&d), &d)
+    };
+    let (first, last) = (own[0], own[own.len() - 1]);
+    let before = others.iter().find(|o| same(&o[o.len() - 1], &first));
+    let after = others.iter().find(|o| same(&o[0], &last));
+    [
+        before.map(|o| way(&o[o.len() - 2], &o[o.len() - 1])),
+        after.map(|o| way(&o[0], &o[1])),
+    ]
+}
+
 fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D> {
     let dp = scene.numerics.spacing;
     let mut points = WallPoints::default();
@@ -268,7 +303,8 @@ fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D>
                 points: corners,
                 closed,
             } => {
-                for (x, normal, weight) in polyline_points(corners, *closed, dp) {
+                let joints = joints(scene, n);
+                for (x, normal, weight) in joined_points(corners, *closed, joints, dp) {
                     points.push(
                         narrow(&[x[0], x[1], 0.0]),
                         velocity,
