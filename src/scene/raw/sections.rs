@@ -112,7 +112,7 @@ table! {
         /// Relative tolerance of the viscous solve.
         optional solver_tolerance: Ratio, in Range::within(1e-14, 0.1), default 3e-4;
         /// Most iterations of a viscous solve.
-        optional solver_max_iterations: Whole, in Range::within(1.0, 1e6), default 500;
+        optional solver_max_iterations: Whole, in Range::within(1.0, 1e6), default 5000;
         /// Whether a scene in which nothing moves is not computed until an input changes. Results differ by less than 1e-4 of the height of the material.
         optional sleep: Flag, default true;
         /// Random displacement of the starting lattice, over the spacing.
