@@ -4,7 +4,7 @@
 //! variable table and no snapshot header; those stand in the modules beside it. `build` joins scene, state,
 //! solver and gauges.
 
-use super::{MassLedger, ParticleView, Statistics};
+use super::{MassLedger, ParticleView, Statistics, Totals};
 use crate::gauge::Reading;
 use crate::solver::StepBound;
 
@@ -153,6 +153,9 @@ pub(crate) trait Engine: Send {
 
     /// Figures of the solver (without the number of communication steps, which the component counts).
     fn statistics(&self) -> Statistics;
+
+    /// Momentum, energy and bounds of all particles.
+    fn totals(&self) -> Totals;
 
     /// Particles as plain arrays, for logs and pictures.
     fn particles(&self) -> ParticleView;

@@ -30,7 +30,7 @@ mod watch;
 pub use error::{Error, Severity};
 pub use host::HostSettings;
 pub use points::next_point;
-pub use reports::{MassLedger, ParticleView, Statistics, StepReport};
+pub use reports::{MassLedger, ParticleView, Statistics, StepReport, Totals};
 pub use status::Status;
 pub use variables::{
     Causality, Start, ValueKind, ValueReference, Variability, Variable, VariableTable,
@@ -354,6 +354,12 @@ impl Component {
             communication_steps: self.life.communication_steps,
             ..self.engine.statistics()
         }
+    }
+
+    /// Momentum, energy and bounds of all particles. Built on demand.
+    #[must_use]
+    pub fn totals(&self) -> Totals {
+        self.engine.totals()
     }
 
     /// Particles as plain arrays, for logs and pictures. Built on demand.

@@ -67,6 +67,23 @@ pub struct Statistics {
     pub creep_rate: f64,
 }
 
+/// Sums over all particles present, for checks of conservation. Of rings: of whole rings.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Totals {
+    /// Momentum [kg m/s].
+    pub momentum: [f64; 3],
+    /// Sum of mass times speed: what a momentum is small against [kg m/s].
+    pub momentum_scale: f64,
+    /// Sum of mass times position; over the mass, the centre of mass [kg m].
+    pub moment: [f64; 3],
+    /// Kinetic energy [J].
+    pub kinetic_energy: f64,
+    /// Least coordinates of any particle [m]; infinite where there is none.
+    pub lower: [f64; 3],
+    /// Largest coordinates of any particle [m]; minus infinite where there is none.
+    pub upper: [f64; 3],
+}
+
 /// A copy of the particles in single precision, for logs and pictures (planar scenes: z = 0).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticleView {

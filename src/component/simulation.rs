@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::engine::{Advance, Devices, Engine, GateState, InflowState, Inputs, SolverError};
 use super::sampling::Sampler;
 use super::snapshot;
-use super::{Error, MassLedger, ParticleView, Statistics};
+use super::{Error, MassLedger, ParticleView, Statistics, Totals};
 use crate::gauge::{Reading, View};
 use crate::math::{Geometry, Vector, dot};
 use crate::scene::{self, Dimension, Scene};
@@ -363,6 +363,32 @@ impl<const D: usize> Engine for Simulation<D> {
             share_ill_posed: validity.share_ill_posed,
             creep_rate: validity.creep_rate,
         }
+    }
+
+    fn totals(&self) -> Totals {
+        let grains = &self.state.grains;
+        let mut totals = Totals {
+            lower: [f64::INFINITY; 3],
+            upper: [f64::NEG_INFINITY; 3],
+            ..Totals::default()
+        };
+        for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
+            let (x, v, m) = (
+                three(&grains.position[i]),
+                three(&grains.velocity[i]),
+                grains.mass[i],
+            );
+            let v2 = dot(&v, &v);
+            totals.momentum_scale += m * v2.sqrt();
+            totals.kinetic_energy += 0.5 * m * v2;
+            for k in 0..3 {
+                totals.momentum[k] += m * v[k];
+                totals.moment[k] += m * x[k];
+                totals.lower[k] = totals.lower[k].min(x[k]);
+                totals.upper[k] = totals.upper[k].max(x[k]);
+            }
+        }
+        totals
     }
 
     fn particles(&self) -> ParticleView {
