@@ -3,6 +3,8 @@
 //! [`speed`] asks where the time goes: [`kernels`] times sweeps alone against their plain forms and a [`roofline`],
 //! [`scenes`] whole components. A [`SpeedRun`] keeps all of it; [`page`] says what was asked and what came out.
 //!
+//! [`precision`] asks what accuracy costs: error against CPU time, and docs/precision.md.
+//!
 //! It prints nothing: `cli` shows progress. Times are CPU times wherever they can be, medians of repetitions, and what is
 //! compared is timed in turns, so that others on the machine disturb both alike.
 
@@ -10,6 +12,7 @@ pub mod clock;
 pub mod kernels;
 pub mod machine;
 pub mod page;
+pub mod precision;
 pub mod roofline;
 pub mod scenes;
 pub mod speed;
@@ -41,7 +44,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A stored run that this program cannot read.
-    #[error("{} is no stored run of this program: {why}; run `sandgate bench speed` anew", path.display())]
+    #[error("{} is no stored run of this program: {why}; run `sandgate bench` anew", path.display())]
     Stored {
         /// The file.
         path: PathBuf,
@@ -54,7 +57,7 @@ pub enum Error {
 ///
 /// # Errors
 /// [`Error::File`].
-pub fn store(path: &Path, run: &SpeedRun) -> Result<(), Error> {
+pub fn store<T: serde::Serialize>(path: &Path, run: &T) -> Result<(), Error> {
     let failed = |action| {
         move |source| Error::File {
             action,
@@ -71,7 +74,7 @@ pub fn store(path: &Path, run: &SpeedRun) -> Result<(), Error> {
 ///
 /// # Errors
 /// [`Error::File`], [`Error::Stored`].
-pub fn stored(path: &Path) -> Result<SpeedRun, Error> {
+pub fn stored<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, Error> {
     let text = std::fs::read_to_string(path).map_err(|source| Error::File {
         action: "read",
         path: path.to_path_buf(),

@@ -42,7 +42,7 @@ pub struct Progress {
     /// Share of the expected work done, 0 to 1.
     pub share: f64,
     /// What is being timed.
-    pub what: &'static str,
+    pub what: String,
 }
 
 /// Steps before the timed ones, timed steps, rounds: of the threads' comparison by size.
@@ -100,7 +100,10 @@ impl Tally<'_> {
         let watch = &mut *self.watch;
         let result = work(&mut |share| {
             let share = (done + weight * share.min(1.0)) / total;
-            watch(Progress { share, what });
+            watch(Progress {
+                share,
+                what: what.to_owned(),
+            });
         });
         self.done += weight;
         result

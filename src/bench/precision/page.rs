@@ -1,0 +1,208 @@
+//! docs/precision.md and its figures from a stored run.
+
+use super::PrecisionRun;
+use super::front::{Standing, standings};
+use super::studies::{Reference, STUDIES, Study};
+use crate::validate::chart::{Chart, Curve, Look};
+use crate::validate::report::number;
+
+/// First line of the page.
+pub const MADE: &str =
+    "<!-- Written by `sandgate bench precision` from a stored run; do not edit. -->";
+
+/// The whole page; figures lie beside it as precision_NAME.svg.
+#[must_use]
+pub fn text(run: &PrecisionRun) -> String {
+    let m = &run.machine;
+    let load = m.load.map_or(String::new(), |(start, end)| {
+        format!(", load {start:.1} at the start and {end:.1} at the end (1 is this measurement)")
+    });
+    let mut text = format!(
+        "{MADE}\n# How accurate, how fast\n\nError against CPU time, one choice at a time: defaults over resolutions, and every other choice \
+         at the resolution of the case. One thread, CPU time of all steps, on {} ({}){load}, version {}, sources {}{}, {}.\n\n\
+         ```\nsandgate bench precision --page docs/precision.md      # all; Ctrl-C keeps what is done, the same command goes on\n\
+         sandgate bench precision bagnold --csv precision.csv\n```\n\nA setting is *on the front* if no other of the same study has no \
+         larger error at less than 95 % of its CPU time; else it is dominated. Timings were taken on a machine that others used \
+         too: CPU times scatter by some percent.",
+        m.processor,
+        m.system,
+        m.version,
+        m.sources,
+        m.commit
+            .as_ref()
+            .map_or(String::new(), |c| format!(", commit {c}")),
+        m.date
+    );
+    text.push_str("\n\n");
+    text.push_str(&summary(run));
+    for study in &STUDIES {
+        let (all, uncertain) = standings(study, run);
+        if !all.is_empty() {
+            text.push_str(&section(study, &all, uncertain));
+        }
+    }
+    text
+}
+
+/// The defaults of each study at its own resolution.
+fn summary(run: &PrecisionRun) -> String {
+    let mut text = "| study | defaults, error | CPU s | CPU s a simulated s | particle steps a CPU s | on the front |\n|---|---|---|---|---|---|\n"
+        .to_owned();
+    for study in &STUDIES {
+        let (all, _) = standings(study, run);
+        let defaults = all
+            .iter()
+            .find(|s| s.measured.setting == "defaults" && s.measured.resolution == 1.0);
+        if let Some(s) = defaults {
+            let m = &s.measured;
+            text.push_str(&format!(
+                "| {} | {} | {} | {} | {:.0} 000 | {} |\n",
+                study.name,
+                s.error.map_or("no result".to_owned(), percent),
+                number(m.cpu),
+                number(m.cpu / m.simulated),
+                (m.particles * m.steps) as f64 / m.cpu / 1e3,
+                place(s)
+            ));
+        }
+    }
+    text
+}
+
+fn percent(share: f64) -> String {
+    format!("{} %", number(100.0 * share))
+}
+
+fn place(standing: &Standing) -> String {
+    match (&standing.dominated_by, standing.error) {
+        (_, None) => "not judged".to_owned(),
+        (None, Some(_)) => "**yes**".to_owned(),
+        (Some((name, resolution)), Some(_)) => format!("no: {name} at x{resolution}"),
+    }
+}
+
+fn section(study: &Study, all: &[Standing], uncertain: Option<f64>) -> String {
+    let mut text = format!("\n## {}\n\n{}.", study.name, capital(study.about));
+    if let Some(uncertain) = uncertain {
+        text.push_str(&format!(
+            " The finest differs from the next by {}: that is how well the reference is known.",
+            percent(uncertain)
+        ));
+    }
+    if let Some((source, value)) = study.published {
+        text.push_str(&format!(" Published: {} ({source}).", number(value)));
+    }
+    text.push_str(&format!(
+        "\n\n![{0}: error against CPU time](precision_{0}.svg)\n\n| setting | dp [mm] | particles | steps | value | error | CPU s | on the front |\n|---|---|---|---|---|---|---|---|\n",
+        study.name
+    ));
+    for s in all {
+        let m = &s.measured;
+        text.push_str(&format!(
+            "| {} | {} | {} | {} | {} | {} | {} | {} |\n",
+            m.setting,
+            number(1e3 * study.spacing(m.resolution)),
+            m.particles,
+            m.steps,
+            m.value.map_or("failed".to_owned(), number),
+            s.error.map_or("-".to_owned(), percent),
+            number(m.cpu),
+            place(s)
+        ));
+    }
+    let dominated: Vec<String> = all
+        .iter()
+        .filter(|s| s.dominated_by.is_some() && s.measured.setting != "defaults")
+        .map(|s| s.measured.setting.clone())
+        .collect();
+    if !dominated.is_empty() {
+        text.push_str(&format!("\nDominated: {}.\n", dominated.join(", ")));
+    }
+    text
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |c| {
+        c.to_uppercase().collect::<String>() + letters.as_str()
+    })
+}
+
+/// The figure of a study: logarithms of error and CPU time, the front as a line.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn figure(study: &Study, run: &PrecisionRun) -> Result<String, String> {
+    let (all, _) = standings(study, run);
+    let log = |s: &Standing| {
+        let error = s.error.filter(|e| *e > 0.0)?;
+        Some((s.measured.cpu.log10(), error.log10()))
+    };
+    let pick = |wanted: &dyn Fn(&Standing) -> bool| -> Vec<(f64, f64)> {
+        all.iter().filter(|s| wanted(s)).filter_map(log).collect()
+    };
+    let mut front = pick(&|s| s.on_front);
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut curves = vec![
+        Curve::new("front", front, Look::Thin, 6),
+        Curve::new(
+            "defaults over resolution",
+            pick(&|s| s.measured.setting == "defaults"),
+            Look::Line,
+            0,
+        ),
+        Curve::new(
+            "defaults over resolution",
+            pick(&|s| s.measured.setting == "defaults"),
+            Look::Dots,
+            0,
+        ),
+    ];
+    let mut names: Vec<&str> = Vec::new();
+    for s in &all {
+        let key = s.measured.setting.split(" = ").next().unwrap_or_default();
+        if key != "defaults" && !names.contains(&key) {
+            names.push(key);
+            let of = |o: &Standing| o.measured.setting.starts_with(&format!("{key} = "));
+            curves.push(Curve::new(key, pick(&of), Look::Dots, names.len()));
+        }
+    }
+    let y = match study.reference {
+        Reference::Error => "log10 of the error",
+        Reference::Finest => "log10 of the error against the finest",
+    };
+    Chart {
+        x: "log10 of CPU time [s]".to_owned(),
+        y: y.to_owned(),
+        curves,
+    }
+    .svg()
+}
+
+/// All of it as CSV.
+#[must_use]
+pub fn csv(run: &PrecisionRun) -> String {
+    let mut text =
+        "study,setting,resolution,particles,steps,simulated_s,value,error,cpu_s,on_front\n"
+            .to_owned();
+    for study in &STUDIES {
+        for s in standings(study, run).0 {
+            let m = &s.measured;
+            let cell = |v: Option<f64>| v.map_or(String::new(), |v| v.to_string());
+            text.push_str(&format!(
+                "{},{},{},{},{},{},{},{},{},{}\n",
+                m.study,
+                m.setting,
+                m.resolution,
+                m.particles,
+                m.steps,
+                m.simulated,
+                cell(m.value),
+                cell(s.error),
+                m.cpu,
+                s.on_front
+            ));
+        }
+    }
+    text
+}
