@@ -4,7 +4,7 @@
 //! [`component::Component`] is built: the one thing that steps, over one table of variables. Inside, [`shape`] is filled
 //! with particles of a [`material`], kept in [`state`], bounded by [`boundary`], advanced by [`solver`] with a [`kernel`]
 //! and sums of fixed order ([`math`]), and read by [`gauge`]. Outside, adapters show the component to the world: [`fmi`]
-//! packs it, `record` logs it and `bus` serves it (both in the words of `wire`), `validate` compares it with published data, `bench` measures what it costs, `cli` is the program. The C functions
+//! packs it, `record` logs it and `bus` serves it (both in the words of `wire`), `validate` compares it with published data, `bench` measures what it costs, `stress` tries to break it, `cli` is the program. The C functions
 //! are the package in `fmu/`.
 //!
 //! No adapter holds physics, a rule about lifecycles or a list of variables; nothing below `scene` sees text from a user
@@ -50,6 +50,8 @@ pub mod scene;
 pub mod shape;
 pub mod solver;
 pub mod state;
+#[cfg(feature = "cli")]
+pub mod stress;
 pub mod units;
 #[cfg(feature = "cli")]
 pub mod validate;

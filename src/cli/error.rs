@@ -10,6 +10,7 @@ use crate::fmi;
 use crate::record::{ReadError, RecordError, RecoverError, RedriveError, TableError};
 use crate::report::ReportError;
 use crate::scene::SceneErrors;
+use crate::stress;
 use crate::validate;
 
 /// The exit codes, as `--help` shows them. [`CliError::exit_code`] is the same table in code.
@@ -64,6 +65,9 @@ pub enum CliError {
     /// A page cannot be made of a log.
     #[error("error: {0}")]
     Report(#[from] ReportError),
+    /// What was tried could not be kept.
+    #[error("error: {0}")]
+    Stress(#[from] stress::Error),
     /// A check found a difference; the text says where.
     #[error("{0}")]
     Differs(String),
@@ -123,7 +127,7 @@ impl CliError {
             Self::Log(_) | Self::Read(_) | Self::Recover(_) | Self::Redrive(_) | Self::Table(_) => {
                 5
             }
-            Self::File { .. } | Self::Content { .. } => 5,
+            Self::File { .. } | Self::Content { .. } | Self::Stress(_) => 5,
             Self::Differs(_) => 7,
             Self::Interrupted(_) => 130,
             #[cfg(feature = "bus")]

@@ -22,6 +22,7 @@ mod schema;
 #[cfg(feature = "bus")]
 mod serve;
 mod stop;
+mod stress;
 mod validate;
 
 use std::io::Write as _;
@@ -62,6 +63,8 @@ enum Command {
     Validate(validate::Args),
     /// Time the solver and whole scenes, and write docs/performance.md
     Bench(bench::Args),
+    /// Try to break the scheme with random scenes, and run kept cases again
+    Stress(stress::Args),
     /// Print the JSON Schema of scene files
     Schema(schema::Args),
 }
@@ -98,6 +101,7 @@ fn dispatch(command: &Command) -> Result<(), CliError> {
         Command::Report(args) => report::run(args),
         Command::Validate(args) => validate::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Stress(args) => stress::run(args),
         Command::Schema(args) => schema::run(args),
     }
 }

@@ -35,6 +35,8 @@ mod report;
 mod scenes;
 mod shared_library;
 mod states;
+#[cfg(feature = "cli")]
+mod stress;
 #[path = "../contract/mod.rs"]
 mod suite;
 #[cfg(feature = "cli")]

@@ -1,0 +1,303 @@
+//! Balance of momentum and energy of a run, from outside: sums over particles against gravity, the forces that gauges of
+//! walls and gates report, what flows in, and how walls and gates move.
+
+use crate::component::{Component, Totals, ValueReference};
+use crate::scene::{Dimension, ForceTarget, Scene};
+use crate::solver::Scheme;
+
+use super::walls::length;
+use super::witness::forces;
+
+/// What was so before a step.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Before {
+    /// Sums over particles.
+    pub(super) totals: Totals,
+    /// Mass present and mass that came in [kg].
+    pub(super) mass: f64,
+    pub(super) inflow: f64,
+    /// Openings of all gates.
+    pub(super) openings: Vec<f64>,
+}
+
+impl Before {
+    /// Now.
+    pub(super) fn of(component: &Component, totals: Totals) -> Self {
+        let ledger = component.ledger();
+        let opening = |name: &str| {
+            let name = format!("gate.{name}.actual_opening");
+            let row = component.variables().by_name(&name);
+            let mut value = [0.0];
+            row.map(|row| component.get(&[row.reference], &mut value));
+            value[0]
+        };
+        let gates = component.scene().gates.iter();
+        Self {
+            totals,
+            mass: ledger.present,
+            inflow: ledger.inflow,
+            openings: gates.map(|gate| opening(&gate.name)).collect(),
+        }
+    }
+}
+
+/// What a step came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Found {
+    /// By how much momentum misses the impulses, and the largest of these [kg m/s]; `None` where it cannot be told.
+    pub(super) momentum: Option<(f64, f64)>,
+    /// Sum of mass times speed against the walls' fastest, with a fall over the communication step and what pressure pushes
+    /// in it [kg m/s].
+    pub(super) moving: f64,
+    /// Energy over what it may be without any error, over the scale of the start; `None` where it cannot be told.
+    pub(super) energy: Option<f64>,
+}
+
+/// The account of a run.
+pub(super) struct Balance<'a> {
+    scene: &'a Scene,
+    forces: Vec<(ForceTarget, Vec<ValueReference>)>,
+    /// Whether every wall and gate has a gauge.
+    complete: bool,
+    /// Whether energy can be accounted for.
+    energetic: bool,
+    /// Energy at the start, with all work done since [J].
+    budget: f64,
+    /// M g H + kinetic energy of the start [J].
+    scale: f64,
+    /// Height of the material at the start along gravity, or that of the domain where there is none [m].
+    height: f64,
+    start: [f64; 3],
+}
+
+impl<'a> Balance<'a> {
+    /// Of a scene at its start.
+    pub(super) fn new(scene: &'a Scene, component: &Component, totals: &Totals, mass: f64) -> Self {
+        let forces = forces(scene, component);
+        let complete = forces.len() == scene.walls.len() + scene.gates.len();
+        let g = &scene.domain.gravity;
+        let wraps = (0..3).any(|k| scene.domain.periodic[k] && g[k] != 0.0);
+        let turns = scene.walls.iter().any(|w| w.rotation.is_some());
+        let moves = scene.walls.iter().any(|w| w.velocity != [0.0; 3]) || !scene.gates.is_empty();
+        let (lower, upper) = if mass > 0.0 {
+            (totals.lower, totals.upper)
+        } else {
+            (scene.domain.lower, scene.domain.upper)
+        };
+        let extent = (0..3)
+            .map(|k| (g[k] * (upper[k] - lower[k])).abs())
+            .sum::<f64>();
+        let size = length(g, &[0.0; 3]);
+        let height = if size > 0.0 {
+            extent / size + scene.numerics.spacing
+        } else {
+            0.0
+        };
+        let mut balance = Self {
+            scene,
+            forces,
+            complete,
+            energetic: !wraps && !turns && (complete || !moves),
+            budget: 0.0,
+            scale: mass * size * height + totals.kinetic_energy,
+            height,
+            start: totals.momentum.map(|p| p / mass.max(f64::MIN_POSITIVE)),
+        };
+        balance.budget = balance.energy(totals, mass);
+        balance
+    }
+
+    /// Whether there are walls or gates.
+    pub(super) fn has_walls(&self) -> bool {
+        !(self.scene.walls.is_empty() && self.scene.gates.is_empty())
+    }
+
+    /// Mean velocity at the start [m/s].
+    pub(super) fn start_velocity(&self) -> [f64; 3] {
+        self.start
+    }
+
+    /// M g H of a mass, H the height at the start; kinetic energy of the start where there is no gravity [J].
+    pub(super) fn scale(&self, mass: f64) -> f64 {
+        let weight = mass * length(&self.scene.domain.gravity, &[0.0; 3]) * self.height;
+        if weight > 0.0 {
+            weight
+        } else {
+            self.scale.max(f64::MIN_POSITIVE)
+        }
+    }
+
+    /// Kinetic and potential energy; potential energy is 0 at the domain's lowest corner, so that what leaves takes some away.
+    fn energy(&self, totals: &Totals, mass: f64) -> f64 {
+        let d = &self.scene.domain;
+        let potential = |k: usize| {
+            let least = (-d.gravity[k] * d.lower[k]).min(-d.gravity[k] * d.upper[k]);
+            -d.gravity[k] * totals.moment[k] - mass * least
+        };
+        totals.kinetic_energy + (0..3).map(potential).sum::<f64>()
+    }
+
+    /// Potential energy of a unit of mass from the domain's lowest to its highest corner [J/kg].
+    fn fall(&self) -> f64 {
+        let d = &self.scene.domain;
+        (0..3)
+            .map(|k| (d.gravity[k] * (d.upper[k] - d.lower[k])).abs())
+            .sum()
+    }
+
+    /// Height of the material at the start [m].
+    pub(super) fn height(&self) -> f64 {
+        self.height
+    }
+
+    /// Largest speed of any point of a wall [m/s].
+    fn walls_speed(&self) -> f64 {
+        let d = &self.scene.domain;
+        let reach = length(&d.lower, &d.upper);
+        let speed = |w: &crate::scene::Wall| {
+            let turns = w.rotation.map_or(0.0, |r| r.rate.abs() * reach);
+            length(&w.velocity, &[0.0; 3]) + turns
+        };
+        self.scene.walls.iter().map(speed).fold(0.0, f64::max)
+    }
+
+    /// Sum over particles of the force of their pressure on one side: what pressure, before it is balanced, pushes with in a
+    /// step, and the solve is relative to [N].
+    fn pushes(&self, component: &Component) -> f64 {
+        let n = &self.scene.numerics;
+        let view = component.particles();
+        let push = |(p, x): (&f32, &[f32; 3])| {
+            let face = match self.scene.dimension {
+                Dimension::Two => n.spacing * self.scene.domain.width,
+                Dimension::Axisymmetric => {
+                    let ring = std::f64::consts::TAU * f64::from(x[0]);
+                    n.spacing * ring
+                }
+                Dimension::Three => n.spacing * n.spacing,
+            };
+            f64::from(*p) * face
+        };
+        view.pressure.iter().zip(&view.position).map(push).sum()
+    }
+
+    /// What a fall through the domain, the start, walls, gates and inflows can give a particle by a time [m/s].
+    pub(super) fn speed(&self, time: f64) -> f64 {
+        let scene = self.scene;
+        let none = [0.0; 3];
+        let d = &scene.domain;
+        let fall = (2.0 * self.fall()).sqrt();
+        let along: f64 = (0..3)
+            .filter(|k| d.periodic[*k])
+            .map(|k| d.gravity[k].abs() * time)
+            .sum();
+        let most = |speeds: &mut dyn Iterator<Item = f64>| speeds.fold(0.0, f64::max);
+        let bodies = most(&mut scene.bodies.iter().map(|b| {
+            let profile = match b.profile {
+                crate::scene::VelocityProfile::Uniform => 0.0,
+                crate::scene::VelocityProfile::Bagnold => scene.numerics.sound_speed / 10.0,
+            };
+            length(&b.velocity, &none) + profile
+        }));
+        let walls = self.walls_speed();
+        // Plates slide: what they push goes before their edge.
+        let gates = most(&mut scene.gates.iter().map(|g| g.max_speed));
+        let inflows = most(&mut scene.inflows.iter().map(|i| length(&i.velocity, &none)));
+        // Without gravity and motion there is still the noise of the starting lattice.
+        fall + along + bodies + walls + gates + inflows + 0.01 * scene.numerics.sound_speed
+    }
+
+    /// Accounts for a communication step of h.
+    pub(super) fn step(
+        &mut self,
+        component: &Component,
+        before: &Before,
+        now: &Before,
+        h: f64,
+    ) -> Found {
+        let scene = self.scene;
+        let mut impulse = scene.domain.gravity.map(|g| g * now.mass * h);
+        let mut largest = length(&impulse, &[0.0; 3]);
+        for (target, references) in &self.forces {
+            let mut force = [0.0; 3];
+            let count = references.len().min(3);
+            // These handles came from its own table: it knows them.
+            let _ = component.get(&references[..count], &mut force[..count]);
+            let way = match target {
+                ForceTarget::Wall(i) => scene.walls[*i].velocity.map(|v| v * h),
+                ForceTarget::Gate(i) => {
+                    let gate = &scene.gates[*i];
+                    let moved = now.openings[*i] - before.openings[*i];
+                    std::array::from_fn(|k| (gate.to[k] - gate.from[k]) * moved)
+                }
+            };
+            for k in 0..3 {
+                impulse[k] -= force[k] * h;
+                self.budget -= force[k] * way[k];
+            }
+            largest = largest.max(length(&force, &[0.0; 3]) * h);
+        }
+        let entered = now.inflow - before.inflow;
+        let inflow = scene.inflows.iter().map(|i| length(&i.velocity, &[0.0; 3]));
+        let fastest = inflow.fold(0.0, f64::max);
+        // Its own energy, and the work of pushing it in against the weight of the highest column.
+        self.budget += entered * (0.5 * fastest * fastest + 2.0 * self.fall());
+        if self.scale <= 0.0 {
+            self.scale = self.scale(now.mass);
+        }
+        let energy = self.energetic.then(|| {
+            let over = self.energy(&now.totals, now.mass) - self.budget;
+            over / self.scale.max(self.scale(now.mass))
+        });
+        Found {
+            momentum: self.momentum(before, now, impulse, largest),
+            moving: self.pushes(component) * h
+                + now.totals.momentum_scale.max(before.totals.momentum_scale)
+                + now.mass * (self.walls_speed() + length(&scene.domain.gravity, &[0.0; 3]) * h),
+            energy,
+        }
+    }
+
+    fn momentum(
+        &self,
+        before: &Before,
+        now: &Before,
+        impulse: [f64; 3],
+        largest: f64,
+    ) -> Option<(f64, f64)> {
+        let flows = !(self.scene.inflows.is_empty() && self.scene.outflows.is_empty());
+        let paper_a = matches!(self.scene.numerics.scheme, Scheme::PaperA(_));
+        if flows || !self.complete || paper_a || now.mass <= 0.0 {
+            return None;
+        }
+        // Hoop stress makes radial momentum.
+        let ring = self.scene.dimension == Dimension::Axisymmetric;
+        let axes = if ring { 1..2 } else { 0..3 };
+        let miss = axes
+            .map(|k| {
+                let change = now.totals.momentum[k] - before.totals.momentum[k];
+                (change - impulse[k]).powi(2)
+            })
+            .sum::<f64>()
+            .sqrt();
+        let scale = if self.has_walls() {
+            // Rounding of the sums, beside what the solve leaves.
+            largest + 1e-9 * now.totals.momentum_scale
+        } else {
+            now.totals.momentum_scale.max(largest)
+        };
+        Some((miss, scale))
+    }
+
+    /// What dilatancy may add to the energy, over M g H: the pressure of (M3) depends on the shear rate, so that material
+    /// that is sheared loosens, from phi_max to phi_min at most, and lifts what lies above; half of the weight is above.
+    pub(super) fn dilatancy(&self) -> f64 {
+        let loosest = self.scene.materials.iter().map(|m| {
+            if m.material.grains.diameter > 0.0 {
+                m.material.grains.phi_max / m.material.grains.phi_min - 1.0
+            } else {
+                0.0
+            }
+        });
+        0.5 * loosest.fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,428 @@
+//! docs/stability.md from stored runs: what was tried, what failed and its fix, the map of limits, broken builds.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::limits::{LimitsRun, Sweep};
+use super::store::{self, StressRun};
+use super::{Case, Check, Error, generate};
+use crate::bench::Machine;
+use crate::validate::report::number;
+
+/// First line of the page.
+pub const MADE: &str =
+    "<!-- Written by `sandgate stress --only-page` from stored runs; do not edit. -->";
+
+/// A build that was broken on purpose, and what the harness said of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Broken {
+    /// What was broken.
+    pub what: String,
+    /// The change, as `diff -U0` has it.
+    pub diff: String,
+    /// The command.
+    pub command: String,
+    /// Lines that it printed.
+    pub printed: Vec<String>,
+}
+
+/// A case of cases/stress: its name, the lines before it, the case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kept {
+    /// File name.
+    pub name: String,
+    /// Comment lines, without `#`.
+    pub head: Vec<String>,
+    /// The case.
+    pub case: Case,
+}
+
+/// Everything that the page is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stored {
+    /// The campaign.
+    pub run: StressRun,
+    /// The map.
+    pub limits: LimitsRun,
+    /// Broken builds.
+    pub broken: Vec<Broken>,
+    /// Cases that failed once and pass.
+    pub fixed: Vec<Kept>,
+    /// Cases that still fail.
+    pub open: Vec<Kept>,
+}
+
+impl Stored {
+    /// From the folder of stored runs and that of kept cases.
+    ///
+    /// # Errors
+    /// [`Error::File`], [`Error::Content`].
+    pub fn read(runs: &Path, cases: &Path) -> Result<Self, Error> {
+        Ok(Self {
+            run: store::read(&runs.join("stress.json"))?,
+            limits: store::read(&runs.join("limits.json"))?,
+            broken: store::read(&runs.join("broken_builds.json"))?,
+            fixed: kept(cases)?,
+            open: kept(&cases.join("open"))?,
+        })
+    }
+}
+
+/// The cases of a folder, by name.
+///
+/// # Errors
+/// [`Error::File`], [`Error::Content`].
+pub fn kept(folder: &Path) -> Result<Vec<Kept>, Error> {
+    let failed = |source| Error::File {
+        action: "read",
+        path: folder.to_path_buf(),
+        source,
+    };
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).map_err(failed)?;
+        let head = text.lines().map_while(|line| line.strip_prefix("# "));
+        let case = Case::read(&text).map_err(|problem| Error::Content {
+            path: path.clone(),
+            problem,
+        })?;
+        found.push(Kept {
+            name: path
+                .file_name()
+                .map_or(String::new(), |n| n.to_string_lossy().into_owned()),
+            head: head.map(str::to_owned).collect(),
+            case,
+        });
+    }
+    found.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(found)
+}
+
+/// The whole page.
+#[must_use]
+pub fn text(stored: &Stored) -> String {
+    let parts = [
+        opening(stored),
+        checks(),
+        kinds(stored),
+        bounds(stored),
+        cases(stored),
+        map(&stored.limits),
+        broken(&stored.broken),
+        missing(),
+    ];
+    parts.join("\n\n") + "\n"
+}
+
+fn table(head: &[&str], rows: &[Vec<String>]) -> String {
+    let mut text = format!("| {} |\n|{}\n", head.join(" | "), "---|".repeat(head.len()));
+    for row in rows {
+        text.push_str(&format!("| {} |\n", row.join(" | ")));
+    }
+    text.trim_end().to_owned()
+}
+
+fn machine(m: &Machine) -> String {
+    format!(
+        "{} cores of {} ({}), version {}, sources {}{}, {}",
+        m.cores,
+        m.processor,
+        m.system,
+        m.version,
+        m.sources,
+        m.commit
+            .as_ref()
+            .map_or(String::new(), |c| format!(", commit {c}")),
+        m.date
+    )
+}
+
+fn opening(stored: &Stored) -> String {
+    let run = &stored.run;
+    let failed = run.failed.len();
+    let steps: u64 = run.kinds.iter().map(|k| k.figures.internal_steps).sum();
+    let work: u64 = run.kinds.iter().map(|k| k.particle_steps).sum();
+    let mut by_check: Vec<String> = Vec::new();
+    for (check, name, _) in Check::ALL {
+        let first = |t: &&super::Tried| t.failures.first().is_some_and(|f| f.check == check);
+        let count = run.failed.iter().filter(first).count();
+        if count > 0 {
+            by_check.push(format!("{count} {name}"));
+        }
+    }
+    let verdict = if failed == 0 {
+        "none failed a check".to_owned()
+    } else {
+        format!(
+            "**{failed} failed** ({}): see \"Cases\" for the open ones",
+            by_check.join(", ")
+        )
+    };
+    format!(
+        "{MADE}\n# Stability\n\n`sandgate stress` makes scenes at random, drives them at random, holds every step against the \
+         checks below, and makes what fails smaller until it is a small case file. The last campaign: **{} scenes** (seeds {} \
+         to {}) in one sitting of {:.0} s on {} job{}, {} internal steps, {:.1} million particle steps, {:.0} s of CPU \
+         time; {verdict}. Measured on {}.\n\n```\nsandgate stress --count {} --jobs {} --store benches/runs\nsandgate stress \
+         --limits --store benches/runs\nsandgate stress --only-page --page docs/stability.md\nsandgate stress \
+         cases/stress/heap-95.toml          # a kept case again\nsandgate stress --kind silo --seed 42 --count 1     # one scene of a \
+         campaign\n```\n\nThe test command runs the first 200 seeds and all kept cases.",
+        run.count,
+        run.seed,
+        run.seed + run.count.max(1) - 1,
+        run.wall,
+        run.jobs,
+        if run.jobs == 1 { "" } else { "s" },
+        steps,
+        work as f64 / 1e6,
+        run.cpu(),
+        machine(&run.machine),
+        run.count,
+        run.jobs,
+    )
+}
+
+fn checks() -> String {
+    let rows: Vec<Vec<String>> = Check::ALL
+        .iter()
+        .map(|(_, name, what)| vec![format!("`{name}`"), (*what).to_owned()])
+        .collect();
+    format!(
+        "## Checks\n\n{}\n\nEnergy: what the pressure may give is 1 % of M g H + the kinetic energy at the start (elastic energy at \
+         the scheme's Mach number is gH/200 a kilogram), and half of phi_max/phi_min - 1 of it where the material has a grain \
+         size: by (M3) sheared material loosens and lifts what lies above it, which no friction pays for. Not checked where a \
+         wall turns (its work needs a torque) or gravity has a part along a periodic side.",
+        table(&["check", "what it asks"], &rows)
+    )
+}
+
+fn kinds(stored: &Stored) -> String {
+    let about = |name: &str| generate::by_name(name).map_or("", |k| k.about);
+    let rows: Vec<Vec<String>> = stored
+        .run
+        .kinds
+        .iter()
+        .map(|k| {
+            let f = &k.figures;
+            vec![
+                k.kind.clone(),
+                about(&k.kind).to_owned(),
+                k.scenes.to_string(),
+                if k.failed > 0 {
+                    format!("**{}**", k.failed)
+                } else {
+                    "0".to_owned()
+                },
+                f.internal_steps.to_string(),
+                f.particles.to_string(),
+                format!("{:.1}", f.cpu),
+                k.slept.to_string(),
+            ]
+        })
+        .collect();
+    let head = [
+        "kind",
+        "what it is",
+        "scenes",
+        "failed",
+        "internal steps",
+        "most particles",
+        "CPU s",
+        "slept",
+    ];
+    format!("## Scenes by kind\n\n{}", table(&head, &rows))
+}
+
+fn bounds(stored: &Stored) -> String {
+    let most = |of: &dyn Fn(&super::Figures) -> f64| {
+        stored
+            .run
+            .kinds
+            .iter()
+            .map(|k| of(&k.figures))
+            .fold(0.0, f64::max)
+    };
+    let rows = [
+        (
+            "growth of energy over what was given, of M g H",
+            most(&|f| f.energy_excess),
+            "0.01 and dilatancy",
+        ),
+        (
+            "miss of momentum, of what is allowed",
+            most(&|f| f.momentum_error),
+            "1",
+        ),
+        ("speed, of what is allowed", most(&|f| f.speed_share), "1"),
+        (
+            "share of a particle's neighbourhood that is wall",
+            most(&|f| f.deepest),
+            "0.9",
+        ),
+        (
+            "centre of mass of a rest, over dp",
+            most(&|f| f.creep),
+            "0.01",
+        ),
+    ];
+    let rows: Vec<Vec<String>> = rows
+        .iter()
+        .map(|(what, value, allowed)| {
+            vec![(*what).to_owned(), number(*value), (*allowed).to_owned()]
+        })
+        .collect();
+    format!(
+        "The worst of all scenes, failed ones included:\n\n{}",
+        table(&["figure", "worst", "allowed"], &rows)
+    )
+}
+
+fn cases(stored: &Stored) -> String {
+    let rows = |kept: &[Kept], folder: &str| -> Vec<Vec<String>> {
+        kept.iter()
+            .map(|k| {
+                let said = k.head.iter().skip(1).map(|line| {
+                    let mut line = line.replace('|', "/");
+                    if let Some((at, _)) = line.char_indices().nth(160) {
+                        line.truncate(at);
+                        line.push_str("...");
+                    }
+                    line
+                });
+                vec![
+                    format!("[{0}](../{folder}/{0})", k.name),
+                    said.take(1).collect::<Vec<_>>().join(" "),
+                    k.case.drive.note.clone(),
+                ]
+            })
+            .collect()
+    };
+    format!(
+        "## Cases\n\nWhat failed on the way, made smaller by the program. They pass now and are part of the test command:\n\n{}\n\n\
+         These still fail, and the test command says so as soon as one of them does not:\n\n{}",
+        table(
+            &["case", "it said", "why, and the fix"],
+            &rows(&stored.fixed, "cases/stress")
+        ),
+        table(
+            &["case", "it says", "what is known"],
+            &rows(&stored.open, "cases/stress/open")
+        )
+    )
+}
+
+fn map(limits: &LimitsRun) -> String {
+    let mut text = format!(
+        "## Limits\n\nOne setting swept, all else by default, in two scenes of 240 to 300 particles: a column of sand of a = 0.9 that \
+         collapses (0.4 s, 4.2 sqrt(H/g)), and a level fill in a box that must stay at rest with sleep off (0.4 s). *Reach* is \
+         the outermost particle at the end [m], *kinetic* the kinetic energy at the end over M g H, *creep* how far the fill's centre \
+         of mass moved in the second half over dp. Measured on {}.",
+        machine(&limits.machine)
+    );
+    for sweep in &limits.sweeps {
+        text.push_str(&format!(
+            "\n\n**{}**, {} ({}): {}\n\n{}",
+            sweep.scene,
+            sweep.key,
+            sweep.about,
+            distance(sweep),
+            points(sweep)
+        ));
+    }
+    text
+}
+
+/// How far the default is from where it breaks.
+fn distance(sweep: &Sweep) -> String {
+    let fine = |p: &&super::limits::Point| p.failed.is_empty();
+    let ok: Vec<f64> = sweep.points.iter().filter(fine).map(|p| p.value).collect();
+    let below = sweep
+        .points
+        .iter()
+        .filter(|p| p.value < sweep.default && !p.failed.is_empty())
+        .map(|p| p.value)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let above = sweep
+        .points
+        .iter()
+        .filter(|p| p.value > sweep.default && !p.failed.is_empty())
+        .map(|p| p.value)
+        .fold(f64::INFINITY, f64::min);
+    let edge = |limit: f64| {
+        if limit.is_finite() {
+            format!("breaks at {}", number(limit))
+        } else {
+            "does not break".to_owned()
+        }
+    };
+    let passes = ok.len();
+    format!(
+        "{passes} of {} values pass; the default {} {} below and {} above",
+        sweep.points.len(),
+        number(sweep.default),
+        edge(below),
+        edge(above)
+    )
+}
+
+fn points(sweep: &Sweep) -> String {
+    let rows: Vec<Vec<String>> = sweep
+        .points
+        .iter()
+        .map(|p| {
+            let f = &p.figures;
+            vec![
+                number(p.value),
+                if p.failed.is_empty() {
+                    "passes".to_owned()
+                } else {
+                    format!("**{}**", p.failed.join(", "))
+                },
+                number(f.reach),
+                format!("{:.1e}", f.kinetic),
+                format!("{:.1e}", f.creep),
+                f.internal_steps.to_string(),
+                format!("{:.2}", f.cpu),
+            ]
+        })
+        .collect();
+    table(
+        &[
+            "value",
+            "checks",
+            "reach [m]",
+            "kinetic",
+            "creep",
+            "steps",
+            "CPU s",
+        ],
+        &rows,
+    )
+}
+
+fn broken(builds: &[Broken]) -> String {
+    let mut text = "## Broken on purpose\n\nBuilds with one line changed, each in a scratch copy of the tree, and what the harness said."
+        .to_owned();
+    for build in builds {
+        text.push_str(&format!(
+            "\n\n**{}**\n\n```diff\n{}\n```\n\n```\n$ {}\n{}\n```",
+            build.what,
+            build.diff.trim_end(),
+            build.command,
+            build.printed.join("\n")
+        ));
+    }
+    text
+}
+
+fn missing() -> String {
+    "## What is not tried\n\nS22 (convergence over three resolutions) needs more than 500 particles: it is part of `sandgate validate`. \
+     S23 (gravity flips) and S24 (a floor that vibrates) need gravity and walls whose motion changes with time; there are \
+     none. Sweeps use one thread below 2,500 particles, so that only kind `threads` compares numbers of threads. Out of memory \
+     and a full disk are not part of this harness; full disks are tested with the logs."
+        .to_owned()
+}

@@ -1,0 +1,147 @@
+//! Steps a component as a case's drive says: inputs from the scene's schedules, communication steps in turn, cut after so
+//! many internal steps.
+
+use cpu_time::ThreadTime;
+
+use crate::component::{Component, Error, StepReport, ValueReference, Wish};
+use crate::scene::{InputTarget, Scene, Schedule};
+
+use super::Case;
+
+/// One communication step that was done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Done {
+    /// The step that was asked for [s].
+    pub(super) asked: f64,
+    /// Internal steps after which it was cut, if it was.
+    pub(super) cut: Option<u64>,
+    /// What the component said.
+    pub(super) report: StepReport,
+}
+
+/// A component on its way.
+pub(super) struct Ride<'a> {
+    case: &'a Case,
+    scene: &'a Scene,
+    /// The component.
+    pub(super) component: Component,
+    inputs: Vec<(ValueReference, &'a Schedule)>,
+    /// Communication steps so far.
+    pub(super) index: usize,
+    /// Internal steps so far.
+    pub(super) internal: u64,
+    /// Set when internal steps or CPU time ran out.
+    pub(super) over: bool,
+    /// CPU time spent in steps [s], and what is allowed.
+    pub(super) cpu: f64,
+    most_cpu: f64,
+    /// Estimate of an internal step [s].
+    internal_step: f64,
+}
+
+impl<'a> Ride<'a> {
+    /// At the start, initialised.
+    ///
+    /// # Errors
+    /// The component's refusals.
+    pub(super) fn new(case: &'a Case, scene: &'a Scene, most_cpu: f64) -> Result<Self, Error> {
+        let mut component = Component::new(scene)?;
+        component.initialize(0.0, None)?;
+        let name = |schedule: &Schedule| match schedule.input {
+            InputTarget::GateOpening(i) => format!("gate.{}.opening", scene.gates[i].name),
+            InputTarget::InflowRate(i) => format!("inflow.{}.rate", scene.inflows[i].name),
+        };
+        let inputs = scene
+            .schedules
+            .iter()
+            .filter_map(|s| Some((component.variables().by_name(&name(s))?.reference, s)))
+            .collect();
+        let n = &scene.numerics;
+        Ok(Self {
+            case,
+            scene,
+            component,
+            inputs,
+            index: 0,
+            internal: 0,
+            over: false,
+            cpu: 0.0,
+            most_cpu,
+            internal_step: n.courant * n.smoothing_ratio * n.spacing / n.sound_speed,
+        })
+    }
+
+    /// Whether the CPU time ran out.
+    pub(super) fn is_hung(&self) -> bool {
+        self.cpu > self.most_cpu
+    }
+
+    /// What each input will be told at the next communication point.
+    pub(super) fn wanted(&self) -> Vec<(InputTarget, f64)> {
+        let time = self.component.time();
+        let told = |(_, s): &(ValueReference, &Schedule)| (s.input, s.value_at(time));
+        self.inputs.iter().map(told).collect()
+    }
+
+    /// The next communication step; `None` at the end.
+    ///
+    /// # Errors
+    /// The component's.
+    pub(super) fn next(&mut self) -> Option<Result<Done, Error>> {
+        if self.over || self.index >= self.case.drive.count {
+            return None;
+        }
+        let steps = &self.case.drive.steps;
+        let asked = steps[self.index % steps.len()];
+        let left = self.case.drive.most_steps.saturating_sub(self.internal);
+        // Watched only where it may have to be cut: plain steps are what most users do.
+        let watched = asked > self.internal_step * left as f64 / 3.0;
+        Some(self.step(asked, watched.then_some(left)))
+    }
+
+    /// A step that another ride did, watched at every internal step and cut at the same one.
+    ///
+    /// # Errors
+    /// The component's.
+    pub(super) fn again(&mut self, done: &Done) -> Result<Done, Error> {
+        self.step(done.asked, Some(done.cut.unwrap_or(u64::MAX)))
+    }
+
+    fn step(&mut self, asked: f64, watch: Option<u64>) -> Result<Done, Error> {
+        let time = self.component.time();
+        for (reference, schedule) in &self.inputs {
+            self.component
+                .set(&[*reference], &[schedule.value_at(time)])?;
+        }
+        let clock = ThreadTime::try_now().ok();
+        let spent = || clock.and_then(|c| c.try_elapsed().ok());
+        let left = self.most_cpu - self.cpu;
+        let mut cut = None;
+        let report = match watch {
+            None => self.component.do_step(time, asked),
+            Some(most) => {
+                let mut count = 0;
+                self.component.do_step_watched(time, asked, &mut |moment| {
+                    count += 1;
+                    let late = count % 16 == 0 && spent().is_some_and(|s| s.as_secs_f64() > left);
+                    if count >= most || late {
+                        cut = Some(count);
+                        return Wish::EndAt(moment.time());
+                    }
+                    Wish::GoOn
+                })
+            }
+        };
+        self.cpu += spent().map_or(0.0, |s| s.as_secs_f64());
+        let report = report?;
+        self.index += 1;
+        self.internal += u64::from(report.substeps);
+        self.over |= self.internal >= self.case.drive.most_steps || self.is_hung();
+        Ok(Done { asked, cut, report })
+    }
+
+    /// The scene.
+    pub(super) fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+}

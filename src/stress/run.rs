@@ -1,0 +1,201 @@
+//! Runs a case with all checks.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use serde::{Deserialize, Serialize};
+
+use crate::component::Component;
+use crate::scene::{Scene, SceneErrors};
+
+use super::checks::{Check, Failure};
+use super::ride::{Done, Ride};
+use super::witness::Witness;
+use super::{Case, Expect, others, refusals};
+
+/// What a case may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// CPU time of all steps of one run of it [s]: more is a hang.
+    pub cpu: f64,
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self { cpu: 60.0 }
+    }
+}
+
+/// What was measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// Most particles at a communication point.
+    pub particles: u64,
+    /// Communication steps.
+    pub communication_steps: u64,
+    /// Internal steps.
+    pub internal_steps: u64,
+    /// Simulated time [s].
+    pub simulated: f64,
+    /// CPU time in steps [s].
+    pub cpu: f64,
+    /// Largest growth of energy over what was given, over M g H [1].
+    pub energy_excess: f64,
+    /// Largest miss of momentum over what the check allows [1].
+    pub momentum_error: f64,
+    /// Largest share of a particle's neighbourhood that is wall [1]: 0.5 at a wall's surface.
+    pub deepest: f64,
+    /// Largest speed over what the check allows [1].
+    pub speed_share: f64,
+    /// Least internal step over the acoustic bound (or the communication step, if that is less) [1].
+    pub least_step: f64,
+    /// Of rests: how far the centre of mass moved in the second half, over the spacing [1].
+    pub creep: f64,
+    /// Largest x of any particle at the end [m].
+    pub reach: f64,
+    /// Kinetic energy at the end over M g H [1].
+    pub kinetic: f64,
+    /// Whether it slept at some time.
+    pub slept: bool,
+}
+
+/// What a case came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// Checks that it failed; none if all is well.
+    pub failures: Vec<Failure>,
+    /// What was measured.
+    pub figures: Figures,
+    /// Why the scene was refused, if it was.
+    pub refused: Option<String>,
+}
+
+impl Outcome {
+    /// The first failure.
+    #[must_use]
+    pub fn failure(&self) -> Option<&Failure> {
+        self.failures.first()
+    }
+
+    fn failed(check: Check, what: impl Into<String>) -> Self {
+        let what = what.into();
+        Self {
+            failures: vec![Failure { check, what }],
+            ..Self::default()
+        }
+    }
+}
+
+/// Runs a case.
+#[must_use]
+pub fn run(case: &Case, bounds: &Bounds) -> Outcome {
+    catch_unwind(AssertUnwindSafe(|| unguarded(case, bounds))).unwrap_or_else(|cause| {
+        let text = cause.downcast_ref::<&str>().map(|s| (*s).to_owned());
+        let text = text.or_else(|| cause.downcast_ref::<String>().cloned());
+        Outcome::failed(Check::Panic, text.unwrap_or_default())
+    })
+}
+
+fn unguarded(case: &Case, bounds: &Bounds) -> Outcome {
+    let scene = match (case.scene(), case.drive.expect) {
+        (Ok(scene), Expect::Run) => scene,
+        (Ok(_), Expect::Refusal) => {
+            return Outcome::failed(Check::Expectation, "an illegal scene was taken");
+        }
+        (Err(problems), Expect::Refusal) => return refused(&problems),
+        (Err(problems), Expect::Run) => {
+            return Outcome {
+                refused: Some(problems.to_string()),
+                ..Outcome::failed(Check::Expectation, format!("refused: {problems}"))
+            };
+        }
+    };
+    ridden(case, &scene, bounds)
+}
+
+/// A refusal says where, what was found, what is allowed and what to do.
+fn refused(problems: &SceneErrors) -> Outcome {
+    let bare = problems
+        .problems()
+        .iter()
+        .find(|p| p.found.is_empty() || p.allowed.is_empty() || p.remedy.is_empty());
+    match bare {
+        Some(problem) => Outcome::failed(Check::Expectation, format!("says too little: {problem}")),
+        None => Outcome {
+            refused: Some(problems.to_string()),
+            ..Outcome::default()
+        },
+    }
+}
+
+fn ridden(case: &Case, scene: &Scene, bounds: &Bounds) -> Outcome {
+    let mut ride = match Ride::new(case, scene, bounds.cpu) {
+        Ok(ride) => ride,
+        Err(error) => {
+            return Outcome {
+                refused: Some(error.to_string()),
+                ..Outcome::failed(Check::Expectation, format!("refused: {error}"))
+            };
+        }
+    };
+    let mut witness = Witness::new(&ride, &case.drive);
+    witness
+        .failures
+        .extend(refusals::probe(&mut ride.component));
+    let mut done: Vec<Done> = Vec::new();
+    let mut saved = None;
+    loop {
+        if ride.index == case.drive.restore_after && saved.is_none() {
+            saved = Some((done.len(), ride.component.save()));
+        }
+        let (start, wanted) = (ride.component.time(), ride.wanted());
+        match ride.next() {
+            None => break,
+            Some(Ok(step)) => {
+                witness.look(&ride.component, &step, start, &wanted);
+                witness.count(&step);
+                done.push(step);
+            }
+            Some(Err(error)) => {
+                witness
+                    .failures
+                    .push(Failure::at(Check::Step, start, error));
+                break;
+            }
+        }
+    }
+    witness.figures.cpu = ride.cpu;
+    if ride.is_hung() {
+        let what = format!("{:.1} s of CPU time, allowed {} s", ride.cpu, bounds.cpu);
+        witness
+            .failures
+            .push(Failure::at(Check::Hang, ride.component.time(), what));
+    }
+    let (mut failures, figures) = (witness.failures, witness.figures);
+    if failures.is_empty() {
+        if let Some((from, saved)) = saved {
+            let saved = saved.map_err(|e| e.to_string());
+            failures.extend(others::same_bits(&ride, case, saved, &done[from..]));
+        }
+        if let Some(twin) = &case.drive.twin {
+            failures.extend(others::twin(&ride.component, case, twin, bounds));
+        }
+    }
+    Outcome {
+        failures,
+        figures,
+        refused: None,
+    }
+}
+
+/// The component's state after a case without checks, for comparisons.
+///
+/// # Errors
+/// Why it did not come to its end.
+pub(super) fn end_of(case: &Case, bounds: &Bounds) -> Result<Component, String> {
+    let scene = case.scene().map_err(|e| e.to_string())?;
+    let mut ride = Ride::new(case, &scene, bounds.cpu).map_err(|e| e.to_string())?;
+    while let Some(step) = ride.next() {
+        step.map_err(|e| e.to_string())?;
+    }
+    Ok(ride.component)
+}
