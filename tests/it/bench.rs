@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
-use sandgate::bench::{page, stored};
+use sandgate::bench::precision::{self, PrecisionRun};
+use sandgate::bench::{SpeedRun, page, stored};
 
 fn bench(arguments: &[&str], folder: &Path) -> (Option<i32>, String, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_sandgate"))
@@ -26,7 +27,7 @@ fn a_quick_run_is_kept_and_makes_its_page() {
     let quick = ["speed", "--quick", "--name", "try", "--page", "page.md"];
     let (code, out, error) = bench(&quick, folder.path());
     assert_eq!(code, Some(0), "{error}");
-    let run = stored(&folder.path().join("benches/runs/try.json")).unwrap();
+    let run: SpeedRun = stored(&folder.path().join("benches/runs/try.json")).unwrap();
     assert!(run.quick);
     let text = std::fs::read_to_string(folder.path().join("page.md")).unwrap();
     assert_eq!(text, page::text(&run));
@@ -84,7 +85,7 @@ fn what_cannot_be_is_refused() {
 #[test]
 fn the_page_in_the_repository_is_that_of_the_run_in_it() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let run = stored(&root.join("benches/runs/speed.json")).unwrap();
+    let run: SpeedRun = stored(&root.join("benches/runs/speed.json")).unwrap();
     assert!(!run.quick);
     let text = std::fs::read_to_string(root.join("docs/performance.md")).unwrap();
     assert_eq!(
@@ -92,4 +93,24 @@ fn the_page_in_the_repository_is_that_of_the_run_in_it() {
         page::text(&run),
         "docs/performance.md is stale; run: sandgate bench speed --only-page --page docs/performance.md"
     );
+}
+
+#[test]
+fn the_page_of_precision_and_its_figures_are_those_of_the_run() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let run: PrecisionRun = stored(&root.join("benches/runs/precision.json")).unwrap();
+    let text = std::fs::read_to_string(root.join("docs/precision.md")).unwrap();
+    assert!(
+        text == precision::text(&run),
+        "docs/precision.md is stale; run: sandgate bench precision --only-page --page docs/precision.md"
+    );
+    for study in &precision::STUDIES {
+        let figure = root.join(format!("docs/precision_{}.svg", study.name));
+        let figure = std::fs::read_to_string(figure).unwrap();
+        assert!(
+            figure == precision::figure(study, &run).unwrap(),
+            "{}",
+            study.name
+        );
+    }
 }
