@@ -80,8 +80,8 @@ pub(super) fn twin(
         )
     };
     let ((x, v), (y, mut u)) = (mean(component), mean(&other));
-    for k in 0..2 {
-        u[k] -= twin.boost[k];
+    for (u, boost) in u.iter_mut().zip(twin.boost) {
+        *u -= boost;
     }
     // Frames that move against each other see the material at different places, wrapped around periodic sides.
     let apart = if twin.boost == [0.0; 2] {

@@ -306,7 +306,7 @@ pub(super) fn history(dice: &mut Dice, input: &str, most: f64, time: f64) -> Str
             let at = |k: usize| {
                 [
                     short(time * k as f64 / count as f64),
-                    if k % 2 == 0 { most } else { 0.0 },
+                    if k.is_multiple_of(2) { most } else { 0.0 },
                 ]
             };
             (0..count).map(at).collect()

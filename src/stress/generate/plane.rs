@@ -13,6 +13,9 @@ pub(super) const PARTICLES: (f64, f64) = (25.0, 420.0);
 /// Least and most internal steps.
 pub(super) const STEPS: (f64, f64) = (150.0, 1900.0);
 
+/// A full turn, nearly: directions are drawn from it [rad].
+const TURN: f64 = 628.0 / 100.0;
+
 /// A heap of any slenderness in a closed box.
 pub(super) fn column(dice: &mut Dice) -> Draft {
     let width = dice.log(0.01, 1.0);
@@ -64,7 +67,7 @@ pub(super) fn corners(dice: &mut Dice) -> Draft {
     let radius = dice.log(0.02, 0.5);
     let sides = dice.whole(3, 7);
     let squash = dice.from(0.4, 1.0);
-    let turn = dice.from(0.0, 6.28);
+    let turn = dice.from(0.0, TURN);
     let spread = 0.5 / sides as f64;
     let outline: Vec<[f64; 2]> = (0..sides)
         .map(|k| {
@@ -94,7 +97,7 @@ pub(super) fn corners(dice: &mut Dice) -> Draft {
     let fall = (2.0 * G * radius).sqrt();
     let throw = dice.from(0.0, 3.0) * fall;
     scale.speed = throw;
-    let (way, down) = (dice.from(0.0, 6.28), dice.from(0.0, 6.28));
+    let (way, down) = (dice.from(0.0, TURN), dice.from(0.0, TURN));
     let g = if dice.chance(0.15) { 0.0 } else { G };
     let gravity = [short(g * down.cos()), short(g * down.sin())];
     let margin = 6.0 * scale.spacing + radius;
