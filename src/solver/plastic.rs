@@ -45,7 +45,12 @@ impl<const D: usize> Solver<D> {
         self.workers.each(&mut grains.stress, |i, lambda| {
             let material = &self.materials[phase[i] as usize];
             let rate = self.geometry.size(&q[i]);
-            let most = material.shear_stress(rate, self.pressure[i], self.kinematics[i].correction);
+            let r = self.kinematics[i].correction;
+            let most = if material.is_fluid() {
+                r * material.shear_stress(r * rate, 0.0, 1.0)
+            } else {
+                material.shear_stress(rate, self.yield_pressure(i), r)
+            };
             let (size, most) = (self.geometry.size(lambda), SPARE * most);
             if size > most {
                 *lambda = lambda.map(|row| scale(most / size, &row));
