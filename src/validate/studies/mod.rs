@@ -1,8 +1,10 @@
 //! The studies, one a file. A new one: its file, a line of [`ALL`], and its reference data under cases/reference.
 
+mod channel;
 mod columns;
 mod contact;
 mod controls;
+mod dam_breaks;
 mod incline;
 mod janssen;
 mod rest;
@@ -11,7 +13,7 @@ mod silo;
 use super::Study;
 
 /// All studies, in the order in which they are listed and run.
-pub const ALL: [Study; 10] = [
+pub const ALL: [Study; 12] = [
     incline::STUDY,
     columns::STUDY,
     columns::axisymmetric::STUDY,
@@ -22,6 +24,8 @@ pub const ALL: [Study; 10] = [
     silo::STUDY,
     silo::cohesion::STUDY,
     controls::STUDY,
+    channel::STUDY,
+    dam_breaks::STUDY,
 ];
 
 /// A study by name.
