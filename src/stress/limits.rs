@@ -115,7 +115,7 @@ const KEYS: [Key; 7] = [
         key: "pair_viscosity_share",
         about: "share of the pair form of viscosity",
         default: 0.05,
-        values: &[0.0, 0.01, 0.05, 0.2, 0.5, 1.0],
+        values: &[0.0, 0.01, 0.05, 0.2, 0.5, 0.95],
     },
 ];
 

@@ -281,16 +281,23 @@ mod tests {
         }
     }
 
+    /// It starts in the box of the resting depth, so that heights miss those of the dilated layer by its dilation.
     #[test]
-    fn an_exact_profile_has_no_error() {
-        let scene = STUDIES[0]
+    fn the_exact_profile_misses_by_its_dilation_and_rest_by_all() {
+        let text = STUDIES[0]
             .scene(&Setting {
                 resolution: 1.0,
                 change: None,
             })
             .unwrap();
-        let component = Component::new(&scene::parse("bagnold", &scene).unwrap()).unwrap();
-        let start = bagnold(&component);
-        assert!(start < 0.01, "{start}");
+        let error = |text: &str| {
+            let scene = scene::parse("bagnold", text).unwrap();
+            bagnold(&Component::new(&scene).unwrap())
+        };
+        let dilation = layer().dilated_depth() / 0.1 - 1.0;
+        let start = error(&text);
+        assert!(start < dilation, "{start} {dilation}");
+        let rest = error(&text.replace("velocity_profile = \"bagnold\"\n", ""));
+        assert!(rest > 0.5, "{rest}");
     }
 }
