@@ -143,10 +143,9 @@ impl<const D: usize> Solver<D> {
             let projection = self.wall_projection(xi, wall, state);
             let seen =
                 |a: &Vector<D>| -> Vector<D> { projection.map_or(*a, |n| scale(dot(&n, a), &n)) };
-            if let Some(n) = &projection {
-                self.touch(contacts, first_contact, (i, wall), n, &g);
-            }
-            face = face.with(projection);
+            let rubs =
+                projection.is_some_and(|n| self.touch(contacts, first_contact, (i, wall), &n, &g));
+            face = face.with(projection.filter(|_| rubs));
             if is_fluid {
                 let n = projection.unwrap_or_else(|| self.wall_normal(xi, wall, state));
                 let part = -vf * dot(&n, &x).powi(2);

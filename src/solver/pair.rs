@@ -22,7 +22,7 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) c: Tensor<D>,
     /// sum c (P g)(P g)^T v_w.
     pub(super) cv: Vector<D>,
-    /// Whether it sees one flat face that lets it slide and nothing else: then s has no part along it.
+    /// Whether it sees one flat face with friction and nothing else: then s has no part along it.
     pub(super) flat: bool,
     /// Of fluids: sum |F| V (n.x)^2 n n^T, how far their stress is carried on into walls (docs/theory.md, W4); else 0.
     pub(super) lean: Tensor<D>,

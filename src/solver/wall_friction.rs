@@ -61,19 +61,19 @@ pub(super) struct Friction<const D: usize> {
 /// Share of a face's area that `spread` gives the direction across all faces, where it has none.
 const ACROSS: f64 = 1e-2;
 
-/// What a particle sees of walls, as far as it tells whether that is one flat face that lets it slide.
+/// What a particle sees of walls, as far as it tells whether that is one flat face with friction.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Face<const D: usize> {
     /// Nothing yet.
     None,
-    /// Points with free slip or friction and this normal only.
+    /// Points with friction and this normal only.
     Flat(Vector<D>),
     /// Something else, too.
     Other,
 }
 
 impl<const D: usize> Face<D> {
-    /// With one more point; `normal` if it lets material slide.
+    /// With one more point; `normal` if it has friction.
     pub(super) fn with(self, normal: Option<Vector<D>>) -> Self {
         match (self, normal) {
             (Face::None, Some(n)) => Face::Flat(n),
@@ -95,8 +95,8 @@ impl<const D: usize> Contact<D> {
 }
 
 impl<const D: usize> Solver<D> {
-    /// Adds a wall point to the contacts of row i, which begin at `first`, if its wall has friction; n the normal there,
-    /// g = V_i w grad W.
+    /// Adds a wall point to the contacts of row i, which begin at `first`; n the normal there, g = V_i w grad W. Says
+    /// whether the wall has friction.
     #[inline(always)]
     pub(super) fn touch(
         &self,
@@ -105,10 +105,10 @@ impl<const D: usize> Solver<D> {
         (i, wall): (usize, u32),
         n: &Vector<D>,
         g: &Vector<D>,
-    ) {
+    ) -> bool {
         let group = self.walls.group[wall as usize];
         if self.walls.groups[group as usize].friction == 0.0 {
-            return;
+            return false;
         }
         let area = -2.0 * dot(g, n) * self.volume[i] * self.width;
         let drive = scale(area, &self.walls.velocity[wall as usize]);
@@ -127,6 +127,7 @@ impl<const D: usize> Solver<D> {
                 drive,
             });
         }
+        true
     }
 
     /// Makes the friction rows of a step from the contacts of the last sweep.
