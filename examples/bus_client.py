@@ -46,7 +46,11 @@ class Component:
         replies = list(self.session.get(f"{self.base}/@rpc/{verb}", payload=body, timeout=timeout))
         if not replies:
             raise TimeoutError(f"nobody answers at {self.base}")
-        reply = json.loads((replies[0].ok or replies[0].err).payload.to_string())
+        text = (replies[0].ok or replies[0].err).payload.to_string()
+        try:
+            reply = json.loads(text)
+        except json.JSONDecodeError:  # Zenoh's own words, such as "Timeout" when the component ends before it answers
+            raise TimeoutError(f"no answer from {self.base}: {text}") from None
         if not reply["ok"]:
             raise Refused(reply)
         return reply
