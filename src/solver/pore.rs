@@ -287,7 +287,7 @@ impl<const D: usize> Solver<D> {
                         }
                         sum
                     });
-            if !(curvature > 0.0) {
+            if curvature.is_nan() || curvature <= 0.0 {
                 return;
             }
             let step = rz / curvature;
