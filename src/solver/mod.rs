@@ -194,6 +194,8 @@ pub struct Solver<const D: usize> {
     /// Pressure between grains, that of saturated material without its pores' [Pa]; empty where it is the pressure.
     effective: Vec<f64>,
     pore: pore::Work,
+    /// Of a full neighbourhood, for dry surfaces of saturated material [1/m^2]; 0 in scenes without.
+    lattice_sum: f64,
     /// 1 for fluids without yield stress, else 0; empty in scenes without.
     flows: Vec<f64>,
     /// Part of each particle's momentum that walls are given; empty in scenes without fluids.
@@ -232,7 +234,8 @@ impl<const D: usize> Solver<D> {
             sources,
             sinks,
         } = plan;
-        let h = numerics.spacing * numerics.smoothing_ratio;
+        let spacing = numerics.spacing;
+        let h = spacing * numerics.smoothing_ratio;
         let kernel = WendlandC2::new(h);
         let fixed_groups = walls.groups.len() - plates.len();
         for mover in &movers {
@@ -283,6 +286,11 @@ impl<const D: usize> Solver<D> {
             normal_pressure: Vec::new(),
             effective: Vec::new(),
             pore: pore::Work::default(),
+            lattice_sum: if has_pores {
+                pore::lattice_sum(&kernel, spacing)
+            } else {
+                0.0
+            },
             flows: Vec::new(),
             lean: Vec::new(),
             openness: Vec::new(),

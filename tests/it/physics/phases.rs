@@ -200,6 +200,25 @@ fn grains_of_a_saturated_bed_carry_its_buoyant_weight() {
     assert!(water < 0.01, "{water}");
 }
 
+#[test]
+fn the_pores_of_a_bed_without_water_above_are_hydrostatic_from_its_surface() {
+    for (ratio, slip) in [(1.3, "no_slip"), (1.6, "free_slip"), (2.0, "no_slip")] {
+        let mut scene = layers(slip);
+        scene.numerics.smoothing_ratio = ratio;
+        scene.bodies.retain(|b| b.name == "silt");
+        let (solver, state) = solve(&scene, 0.3);
+        let (mut error, mut count) = (0.0, 0.0);
+        for (i, x) in state.grains.position.iter().enumerate() {
+            let pore = solver.pore_pressure(&state, i);
+            error += (pore - 1000.0 * G * (0.06 - x[1])).powi(2);
+            count += 1.0;
+        }
+        let error = f64::sqrt(error / count) / (1000.0 * G * 0.06);
+        println!("dry bed, h/dp {ratio}: pore pressure rms {error:.4} of that at the floor");
+        assert!(error < 0.02, "{ratio}: {error}");
+    }
+}
+
 /// Silt and water side by side in free space, turning and shearing.
 fn thrown(gravity: f64) -> Scene {
     parse(&format!(
