@@ -3,10 +3,12 @@
 //! A wall point counts twice in every pair sum and takes the volume, pressure and stress of the particle that sees it
 //! (docs/theory.md, "Walls"): no distance to the wall is needed.
 
+mod element;
 mod mover;
 mod plate;
 mod points;
 
+pub use element::{Element, box_elements, plane_elements, polyline_elements};
 pub use mover::{Mover, RigidMotion};
 pub use plate::Plate;
 pub use points::{

@@ -65,6 +65,19 @@ impl<const D: usize> WendlandC2<D> {
         self.a * t2 * t2 * (1.0 + 4.0 * r * self.inverse_2h)
     }
 
+    /// Share of the kernel outside of radius r, int_{|x| > r} W dx, 1 at r = 0 and 0 at the support [1].
+    #[inline]
+    #[must_use]
+    pub fn share_outside(&self, r: f64) -> f64 {
+        let t = (1.0 - r * self.inverse_2h).max(0.0);
+        let t5 = t * t * t * t * t;
+        if D == 2 {
+            t5 * (14.0 - t * (21.0 - 8.0 * t))
+        } else {
+            t5 * (42.0 - t * (98.0 - t * (78.0 - 21.0 * t)))
+        }
+    }
+
     /// F(r) = W'(r)/r <= 0 [1/m^(D+2)].
     #[inline(always)]
     #[must_use]
@@ -93,6 +106,23 @@ mod tests {
             (s2 - 1.0).abs() < 1e-8 && (s3 - 1.0).abs() < 1e-8,
             "{s2} {s3}"
         );
+    }
+
+    #[test]
+    fn what_is_outside_a_radius_is_the_integral_there() {
+        let (k2, k3) = (WendlandC2::<2>::new(0.7), WendlandC2::<3>::new(0.7));
+        for r in [0.0, 0.2, 0.7, 1.1, 1.5] {
+            let n = 20_000;
+            let dr = (1.4 - r).max(0.0) / f64::from(n);
+            let (mut s2, mut s3) = (0.0, 0.0);
+            for i in 0..n {
+                let s = r + (f64::from(i) + 0.5) * dr;
+                s2 += k2.w(s) * 2.0 * PI * s * dr;
+                s3 += k3.w(s) * 4.0 * PI * s * s * dr;
+            }
+            assert!((k2.share_outside(r) - s2).abs() < 1e-7, "{r}");
+            assert!((k3.share_outside(r) - s3).abs() < 1e-7, "{r}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::shape::lattice;
 use crate::solver::{Periodic, Plan, Scheme, Sink, Source};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
+use super::elements::elements;
 use super::ghosts::ghost_depth;
 use super::steady_flow::steady_flow;
 use super::{Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, Wall, WallGeometry};
@@ -25,7 +26,10 @@ pub fn narrow<const D: usize>(point: &Point) -> Vector<D> {
 pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), String> {
     let periodic = periodic::<D>(scene)?;
     let plates = plates::<D>(scene);
-    let walls = walls::<D>(scene, &periodic);
+    let walls = match scene.numerics.scheme {
+        Scheme::PaperB(_) => elements::<D>(scene),
+        Scheme::Implicit | Scheme::PaperA(_) => walls::<D>(scene, &periodic),
+    };
     let movers = movers(scene, &walls);
     let sources = scene.inflows.iter().map(|i| source(scene, i)).collect();
     let sinks = scene
@@ -38,7 +42,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         .collect();
     let ghost_depth = match scene.numerics.scheme {
         Scheme::PaperA(_) => ghost_depth(scene, &walls),
-        Scheme::Implicit => Vec::new(),
+        Scheme::Implicit | Scheme::PaperB(_) => Vec::new(),
     };
     let state = state::<D>(scene)?;
     let plan = Plan {
@@ -242,7 +246,8 @@ fn load_above(scene: &Scene, place: &Point, up: usize) -> f64 {
     load
 }
 
-fn group(scene: &Scene, slip: Slip, moves: bool, target: ForceTarget) -> GroupSpec {
+/// What all points of a wall or gate share.
+pub(super) fn group(scene: &Scene, slip: Slip, moves: bool, target: ForceTarget) -> GroupSpec {
     let wants_force = scene
         .gauges
         .iter()

@@ -7,6 +7,7 @@
 mod adjust;
 mod build;
 mod error;
+mod elements;
 mod ghosts;
 mod lift;
 mod raw;

@@ -19,6 +19,7 @@ mod lists;
 mod numerics;
 mod pair;
 mod paper_a;
+mod paper_b;
 mod passes;
 mod plain;
 mod plastic;
@@ -42,6 +43,7 @@ pub use error::SolverError;
 pub use grid::Periodic;
 pub use numerics::{Numerics, Scheme, YieldForm};
 pub use paper_a::PaperA;
+pub use paper_b::PaperB;
 pub use passes::{Pass, Passes};
 pub use validity::Validity;
 
@@ -72,7 +74,7 @@ pub enum StepBound {
     Acoustic,
     /// Relative motion of neighbours or walls.
     Motion,
-    /// Explicit viscosity (scheme `paper_a`).
+    /// Explicit viscosity (schemes `paper_a` and `paper_b`).
     Viscous,
     /// The end of the communication step.
     Communication,
@@ -110,7 +112,8 @@ pub struct Plan<const D: usize> {
     pub materials: Vec<Material>,
     /// Points of the fixed walls; groups hold walls, then gates.
     pub walls: WallPoints<D>,
-    /// Distance of each of these points behind its wall's surface [m]; only scheme `paper_a` needs it, else empty.
+    /// Distance of each of these points behind its wall's surface [m]; only scheme `paper_a` needs it, else empty. Those of
+    /// scheme `paper_b` are elements of the surface: their weight is length, or area in space, over that of a spacing.
     pub ghost_depth: Vec<f64>,
     /// Walls that move as a whole.
     pub movers: Vec<Mover<D>>,
@@ -211,6 +214,7 @@ pub struct Solver<const D: usize> {
     viscous: Viscous<D>,
     friction: Friction<D>,
     paper_a: paper_a::Work<D>,
+    paper_b: paper_b::Work<D>,
     /// Positions before the last move, for section crossings.
     before: Vec<Vector<D>>,
 }
@@ -302,6 +306,7 @@ impl<const D: usize> Solver<D> {
             viscous: Viscous::default(),
             friction: Friction::default(),
             paper_a: paper_a::Work::default(),
+            paper_b: paper_b::Work::default(),
             before: Vec::new(),
         }
     }
@@ -314,7 +319,7 @@ impl<const D: usize> Solver<D> {
     /// Sorts a fresh state's particles and derives everything else from it.
     pub fn start(&mut self, state: &mut State<D>) {
         self.renew_lists(state);
-        if self.has_pores {
+        if self.has_pores && self.numerics.scheme == Scheme::Implicit {
             self.sweep_kinematics(state);
             self.seep(state);
         }
@@ -354,8 +359,14 @@ impl<const D: usize> Solver<D> {
             return Ok(self.sleep_until(state, end));
         }
         let (dt, bound) = self.choose_step(state, end)?;
-        if let Scheme::PaperA(choices) = self.numerics.scheme {
-            return self.step_paper_a(&choices, state, (dt, bound), on_move);
+        match self.numerics.scheme {
+            Scheme::Implicit => {}
+            Scheme::PaperA(choices) => {
+                return self.step_paper_a(&choices, state, (dt, bound), on_move);
+            }
+            Scheme::PaperB(choices) => {
+                return self.step_paper_b(&choices, state, (dt, bound), on_move);
+            }
         }
         self.find_shift(state);
         self.sweep_pressure(state, dt);
@@ -399,6 +410,7 @@ impl<const D: usize> Solver<D> {
         let (stable, bound) = match self.numerics.scheme {
             Scheme::Implicit => self.step_bound(state.time)?,
             Scheme::PaperA(_) => self.bound_paper_a(state.time)?,
+            Scheme::PaperB(_) => self.bound_paper_b(state)?,
         };
         let left = end - state.time;
         let count = (left / stable - 1e-9).ceil().max(1.0);
@@ -480,6 +492,19 @@ impl<const D: usize> Solver<D> {
         }
     }
 
+    /// Periodic sides and lists that hold, after a move of the reference schemes, whose walls stand still.
+    fn settle(&mut self, state: &mut State<D>) -> Result<(), SolverError> {
+        self.keep_inside(state)?;
+        let walled = !self.walls.is_empty();
+        if self
+            .lists
+            .outdated(&state.grains, &self.periodic, 0.0, walled, &self.workers)
+        {
+            self.renew_lists(state);
+        }
+        Ok(())
+    }
+
     fn sweep_kinematics_in_valid_lists(&mut self, state: &mut State<D>, renew: bool) {
         let travel = self
             .plates
@@ -528,6 +553,7 @@ impl<const D: usize> Solver<D> {
                 self.respond(state);
             }
             Scheme::PaperA(choices) => self.derive_paper_a(&choices, state),
+            Scheme::PaperB(choices) => self.derive_paper_b(&choices, state),
         }
     }
 
@@ -566,6 +592,14 @@ impl<const D: usize> Solver<D> {
     /// not saturated.
     #[must_use]
     pub fn pore_pressure(&self, state: &State<D>, i: usize) -> f64 {
+        if matches!(self.numerics.scheme, Scheme::PaperB(_)) {
+            let material = &self.materials[state.grains.phase[i] as usize];
+            return if material.is_saturated() {
+                self.pressure[i] - self.effective[i]
+            } else {
+                0.0
+            };
+        }
         state
             .grains
             .pore_pressure

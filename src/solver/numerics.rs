@@ -1,6 +1,6 @@
 //! Every numerical choice a scene may make, with the defaults of docs/theory.md.
 
-use super::PaperA;
+use super::{PaperA, PaperB};
 
 /// The whole scheme: how forces are formed and how they are integrated in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +9,8 @@ pub enum Scheme {
     Implicit,
     /// [A]'s own scheme, the reference: explicit pair viscosity, Morris ghosts, Verlet steps.
     PaperA(PaperA),
+    /// [B]'s own scheme, the reference for several phases: explicit, boundary integrals, predictor and corrector.
+    PaperB(PaperB),
 }
 
 /// How the yield stress holds material that does not flow.
@@ -33,7 +35,8 @@ pub struct Numerics {
     /// Artificial sound speed c0 [m/s]; default 10 max(sqrt(g H), expected speed).
     pub sound_speed: f64,
     /// The scheme. `PaperA` uses spacing, smoothing ratio, sound speed, Courant number, artificial viscosity, jitter and
-    /// seed of this table, and none of the others.
+    /// seed of this table, and none of the others; `PaperB` spacing, smoothing ratio, sound speed, Courant number, density
+    /// diffusion, shifting, jitter and seed.
     pub scheme: Scheme,
     /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.5.
     pub courant: f64,

@@ -140,7 +140,7 @@ impl<const D: usize> Solver<D> {
 }
 
 /// Smallest eigenvalue of a symmetric tensor and its direction.
-fn smallest<const D: usize>(t: &Tensor<D>) -> (f64, Vector<D>) {
+pub(super) fn smallest<const D: usize>(t: &Tensor<D>) -> (f64, Vector<D>) {
     if D == 2 {
         let (a, b, c) = (t[0][0], t[0][1], t[1][1]);
         let half = 0.5 * (a - c);

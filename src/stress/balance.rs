@@ -265,8 +265,8 @@ impl<'a> Balance<'a> {
         largest: f64,
     ) -> Option<(f64, f64)> {
         let flows = !(self.scene.inflows.is_empty() && self.scene.outflows.is_empty());
-        let paper_a = matches!(self.scene.numerics.scheme, Scheme::PaperA(_));
-        if flows || !self.complete || paper_a || now.mass <= 0.0 {
+        let reference = self.scene.numerics.scheme != Scheme::Implicit;
+        if flows || !self.complete || reference || now.mass <= 0.0 {
             return None;
         }
         // Hoop stress makes radial momentum.

@@ -258,7 +258,7 @@ impl<'a> Witness<'a> {
 
     fn check_step_size(&mut self, done: &Done, time: f64) {
         let n = &self.scene.numerics;
-        if matches!(n.scheme, Scheme::PaperA(_)) || self.slept {
+        if n.scheme != Scheme::Implicit || self.slept {
             return;
         }
         let h = n.smoothing_ratio * n.spacing;

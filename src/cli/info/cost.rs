@@ -83,7 +83,9 @@ pub(super) fn report(scene: &Scene, m: &Measured, threads: usize) -> String {
         "step       acoustic bound courant h / c0 = {acoustic:.3e} s; {}communication step {} s\n",
         match numerics.scheme {
             Scheme::Implicit => "viscosity is implicit and bounds nothing; ",
-            Scheme::PaperA(_) => "explicit viscosity bounds it too (often by far); ",
+            Scheme::PaperA(_) | Scheme::PaperB(_) => {
+                "explicit viscosity bounds it too (often by far); "
+            }
         },
         scene.run.step,
     );

@@ -15,8 +15,10 @@ mod material;
 mod motion;
 mod numerics;
 mod paper_a;
+mod paper_b;
 mod profile;
 mod run;
+mod scheme;
 mod walls;
 
 use super::raw::{

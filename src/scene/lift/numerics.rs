@@ -3,7 +3,7 @@
 use super::Lift;
 use crate::scene::raw::{Place, RawMaterial, RawNumerics, YieldWord};
 use crate::scene::types::NamedMaterial;
-use crate::solver::{Numerics, YieldForm};
+use crate::solver::{Numerics, Scheme, YieldForm};
 
 /// Most particles of a scene: memory of a large machine.
 const MOST_PARTICLES: f64 = 50e6;
@@ -45,7 +45,11 @@ impl Lift<'_> {
                 None => 0.05,
             },
             artificial_viscosity: raw.artificial_viscosity.as_ref()?.value.0,
-            shifting: raw.shifting.as_ref()?.value.0,
+            shifting: match &raw.shifting {
+                Some(given) => given.value.0,
+                None if matches!(scheme, Some(Scheme::PaperB(_))) => 1.0,
+                None => 0.0,
+            },
             solver_tolerance: raw.solver_tolerance.as_ref()?.value.0,
             solver_max_iterations: u32::try_from(raw.solver_max_iterations.as_ref()?.value.0)
                 .unwrap_or(u32::MAX),

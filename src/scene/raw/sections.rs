@@ -91,6 +91,10 @@ table! {
         optional scaling_time: Time, in Range::above(0.0), default "1 s";
         /// Scheme paper_a: largest factor beta_max of a grain's velocity against the ghosts behind a wall.
         optional ghost_velocity_factor: Ratio, in Range::within(1.0, 10.0), default 1.5;
+        /// Scheme paper_b: factor K_R on the acceleration of what does not yield; if left out, 1 for one fluid that yields below 100 Pa, 0.05 for other single materials, 0.01 for several.
+        optional relaxation_factor: Ratio, in Range::above_to(0.0, 1.0);
+        /// Scheme paper_b: stiffening time m of Papanastasiou's viscosity; if left out, 0.1 s for fluids that yield below 100 Pa, else 0.01 s. Longer takes smaller steps.
+        optional stiffening_time: Time, in Range::above(0.0);
         /// How the yield stress holds material at rest.
         optional r#yield: YieldWord, default "exact";
         /// Iterations of the exact yield in each internal step; they start from the last step's, so 1 is usual.
@@ -107,8 +111,8 @@ table! {
         optional pair_viscosity_share: Ratio, in Range::within(0.0, 0.95);
         /// Artificial viscosity alpha.
         optional artificial_viscosity: Ratio, in Range::within(0.0, 10.0), default 0;
-        /// Factor on the shifting of fluid particles towards even spacing; 0 switches it off, 1 is the published strength. Particles of materials with friction are never shifted.
-        optional shifting: Ratio, in Range::within(0.0, 1.0), default 0;
+        /// Factor on the shifting of particles towards even spacing; 0 switches it off, 1 is the published strength. Left out: 0, with scheme paper_b 1. With scheme implicit particles of materials with friction are never shifted.
+        optional shifting: Ratio, in Range::within(0.0, 1.0);
         /// Relative tolerance of the viscous solve.
         optional solver_tolerance: Ratio, in Range::within(1e-14, 0.1), default 3e-4;
         /// Most iterations of a viscous solve.
@@ -129,6 +133,8 @@ choice! {
         "implicit" => Implicit,
         /// the scheme of Minatti and Paris (2015) as they wrote it, for comparison: explicit, steps bounded by viscosity, straight fixed walls without slip only
         "paper_a" => PaperA,
+        /// the scheme of Monge-Gapper et al. (2024) as they wrote it, corrected, for comparison: explicit, several phases, boundary integrals at fixed walls, unyielded material attenuated; they take smoothing_ratio = 2
+        "paper_b" => PaperB,
     }
 }
 

@@ -143,15 +143,7 @@ impl<const D: usize> Solver<D> {
             }
         }
         on_move(&self.before, grains);
-        self.keep_inside(state)?;
-        let walled = !self.walls.is_empty();
-        if self
-            .lists
-            .outdated(&state.grains, &self.periodic, 0.0, walled, &self.workers)
-        {
-            self.renew_lists(state);
-        }
-        Ok(())
+        self.settle(state)
     }
 
     /// rho += `time` R of the last sweep.
