@@ -70,12 +70,7 @@ fn segment<const D: usize>(kernel: &WendlandC2<D>, front: f64, along: f64, half:
 }
 
 /// (1/4 pi) sum Q Omega over parts of a square.
-fn square<const D: usize>(
-    kernel: &WendlandC2<D>,
-    front: f64,
-    along: [f64; 2],
-    side: f64,
-) -> f64 {
+fn square<const D: usize>(kernel: &WendlandC2<D>, front: f64, along: [f64; 2], side: f64) -> f64 {
     let near = along[0].hypot(along[1]).hypot(front) < 2.0 * side;
     let parts = if near { PARTS } else { 1 };
     let step = side / f64::from(parts);
@@ -282,7 +277,10 @@ mod tests {
         for front in [1e-6, 0.01, 0.03, 0.05, 0.1, 0.2, 0.35] {
             for shift in [0.0, 0.02, 0.05] {
                 let got = gamma(&k2, &[shift, front], &line);
-                assert!((got - exact(&k2, front)).abs() < 4e-3, "{front} {shift}: {got}");
+                assert!(
+                    (got - exact(&k2, front)).abs() < 4e-3,
+                    "{front} {shift}: {got}"
+                );
                 let got = gamma(&k3, &[shift, -shift, front], &floor);
                 let off = (got - exact(&k3, front)).abs();
                 assert!(off < 8e-3, "{front} {shift}: {got} {off}");

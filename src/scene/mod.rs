@@ -6,8 +6,8 @@
 
 mod adjust;
 mod build;
-mod error;
 mod elements;
+mod error;
 mod ghosts;
 mod lift;
 mod raw;

@@ -9,6 +9,7 @@ mod conservation;
 mod incline;
 mod moving_walls;
 mod paper_a;
+mod paper_b;
 mod phases;
 mod rest;
 mod rheology;

@@ -23,17 +23,49 @@ fn keys(raw: &RawNumerics) -> Vec<Key<'_>> {
         ("yield", IMPLICIT, place(&raw.r#yield)),
         ("yield_iterations", IMPLICIT, place(&raw.yield_iterations)),
         ("cap_time", IMPLICIT, place(&raw.cap_time)),
-        ("density_diffusion", DIFFUSIVE, place(&raw.density_diffusion)),
-        ("diffusion_gate_time", IMPLICIT, place(&raw.diffusion_gate_time)),
-        ("strain_relaxation_time", IMPLICIT, place(&raw.strain_relaxation_time)),
-        ("pair_viscosity_share", IMPLICIT, place(&raw.pair_viscosity_share)),
+        (
+            "density_diffusion",
+            DIFFUSIVE,
+            place(&raw.density_diffusion),
+        ),
+        (
+            "diffusion_gate_time",
+            IMPLICIT,
+            place(&raw.diffusion_gate_time),
+        ),
+        (
+            "strain_relaxation_time",
+            IMPLICIT,
+            place(&raw.strain_relaxation_time),
+        ),
+        (
+            "pair_viscosity_share",
+            IMPLICIT,
+            place(&raw.pair_viscosity_share),
+        ),
         ("solver_tolerance", IMPLICIT, place(&raw.solver_tolerance)),
-        ("solver_max_iterations", IMPLICIT, place(&raw.solver_max_iterations)),
-        ("artificial_viscosity", ARTIFICIAL, place(&raw.artificial_viscosity)),
+        (
+            "solver_max_iterations",
+            IMPLICIT,
+            place(&raw.solver_max_iterations),
+        ),
+        (
+            "artificial_viscosity",
+            ARTIFICIAL,
+            place(&raw.artificial_viscosity),
+        ),
         ("shifting", DIFFUSIVE, place(&raw.shifting)),
-        ("reference_yield_stress", PAPER_A, place(&raw.reference_yield_stress)),
+        (
+            "reference_yield_stress",
+            PAPER_A,
+            place(&raw.reference_yield_stress),
+        ),
         ("scaling_time", PAPER_A, place(&raw.scaling_time)),
-        ("ghost_velocity_factor", PAPER_A, place(&raw.ghost_velocity_factor)),
+        (
+            "ghost_velocity_factor",
+            PAPER_A,
+            place(&raw.ghost_velocity_factor),
+        ),
         ("relaxation_factor", PAPER_B, place(&raw.relaxation_factor)),
         ("stiffening_time", PAPER_B, place(&raw.stiffening_time)),
     ]
@@ -116,5 +148,7 @@ pub(super) fn motion(wall: &RawWall) -> Option<&'static str> {
     if velocity.is_some_and(|v| moves(&v.value.values)) {
         return Some("a wall that moves");
     }
-    wall.angular_velocity.is_some().then_some("a wall that turns")
+    wall.angular_velocity
+        .is_some()
+        .then_some("a wall that turns")
 }

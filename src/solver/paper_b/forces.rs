@@ -168,24 +168,35 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Impulse of the material on walls whose force somebody reads, over `time` [N s].
+    /// Impulse of the material on walls whose force somebody reads, over `time` [N s]: the pressure on their elements, and what
+    /// shear stress the particles before them give up.
     pub(super) fn react_paper_b(&self, state: &mut State<D>, time: f64) {
-        if !self.walls.groups.iter().any(|g| g.wants_force) {
+        let groups = &self.walls.groups;
+        if !groups.iter().any(|g| g.wants_force) {
             return;
+        }
+        let dp = self.numerics.spacing;
+        for (w, p) in self.paper_b.wall_pressure.iter().enumerate() {
+            let group = self.walls.group[w] as usize;
+            if groups[group].wants_force {
+                let area = self.walls.weight[w] * dp.powi(D as i32 - 1) * self.width;
+                let push = time * area * p.max(0.0);
+                for k in 0..D {
+                    state.impulse[group][k] -= push * self.walls.normal[w][k];
+                }
+            }
         }
         for (b, block) in self.lists.blocks.iter().enumerate() {
             for row in 0..block.rows() {
                 let i = b * CHUNK + row;
-                // Without the Shepard factor: over all particles the kernel in front of a wall sums up to a half.
-                let volume = state.grains.mass[i] / state.grains.density[i];
                 for element in self.elements(&state.grains.position[i], block.wall_row(row)) {
-                    let group = element.group;
-                    if self.walls.groups[group].wants_force {
+                    if groups[element.group].wants_force && !self.slips(&element) {
                         let own = &self.paper_b.response[i];
-                        let there = self.paper_b.wall_pressure[element.index];
-                        let push = self.wall_push(own, there, &element);
+                        let stress = apply(&own.shear_stress, &element.area());
+                        // Without the Shepard factor the kernel before a wall sums up to a half, which the 2 makes whole.
+                        let over = 2.0 * time * self.volume[i] * self.width;
                         for k in 0..D {
-                            state.impulse[group][k] -= time * volume * push[k];
+                            state.impulse[element.group][k] -= over * stress[k];
                         }
                     }
                 }

@@ -126,7 +126,11 @@ impl<const D: usize> Solver<D> {
     ) -> Vec<Vector<D>> {
         self.evaluate(choices, state, dt, self.numerics.shifting > 0.0);
         self.react_paper_b(state, 0.5 * dt);
-        let rows = self.paper_b.forces.iter().zip(&state.grains.viscous_acceleration);
+        let rows = self
+            .paper_b
+            .forces
+            .iter()
+            .zip(&state.grains.viscous_acceleration);
         rows.map(|(forces, a)| {
             // (x + x' + dt u')/2 - x' = dt (u' - u)/2.
             std::array::from_fn(|k| 0.5 * dt * dt * a[k] + forces.shift[k])

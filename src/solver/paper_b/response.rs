@@ -173,7 +173,10 @@ mod tests {
         // Shear alone: gamma is the shear rate; even dilation in the plane: e_zz = -2/3, e_xx = e_yy = 1/3.
         assert!((strain_rate(&[[0.0, 2.0], [0.0, 0.0]]).1 - 2.0).abs() < 1e-15);
         let (_, gamma) = strain_rate(&[[1.0, 0.0], [0.0, 1.0]]);
-        assert!((gamma - (2.0_f64 * 6.0 / 9.0).sqrt()).abs() < 1e-15, "{gamma}");
+        assert!(
+            (gamma - (2.0_f64 * 6.0 / 9.0).sqrt()).abs() < 1e-15,
+            "{gamma}"
+        );
         let (_, gamma) = strain_rate(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         assert!(gamma < 1e-15);
     }

@@ -70,11 +70,7 @@ impl<const D: usize> Solver<D> {
 
     fn rates_of(&self, state: &State<D>, i: usize, near: &[u32], walls: &[u32]) -> Sums<D> {
         let grains = &state.grains;
-        let (x, u, rho) = (
-            &grains.position[i],
-            &grains.velocity[i],
-            grains.density[i],
-        );
+        let (x, u, rho) = (&grains.position[i], &grains.velocity[i], grains.density[i]);
         let mut divergence = 0.0;
         let mut gradient = [[0.0; D]; D];
         let mut moment = [[0.0; D]; D];
