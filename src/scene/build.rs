@@ -5,13 +5,18 @@ use crate::boundary::{
 };
 use crate::math::{Geometry, Vector, add, dot, norm, scale};
 use crate::shape::lattice;
-use crate::solver::{Periodic, Plan, Scheme, Sink, Source};
+use crate::solver::{Periodic, Plan, Scheme, Sink, Source, three};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
 use super::elements::elements;
 use super::ghosts::ghost_depth;
 use super::steady_flow::steady_flow;
-use super::{Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, Wall, WallGeometry};
+use super::{
+    Body, Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, Wall, WallGeometry,
+};
+
+/// Halvings of a spacing that find where a body ends.
+const BISECTIONS: u32 = 20;
 
 /// The first D components of a point.
 #[must_use]
@@ -157,10 +162,11 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
             let position: Vector<D> =
                 std::array::from_fn(|k| place[k] + reach(k, place) * random.symmetric());
             let mut velocity: Vector<D> = narrow(&body.velocity);
-            let mut density = material.density_under(load_above(scene, place, up), sound_speed);
+            let mut density =
+                material.density_under(load_above(scene, &three(&position), up), sound_speed);
             let mut shear_rate = 0.0;
             if let Some(flow) = &flow {
-                let here = flow.at(&crate::solver::three(&position), scene.numerics.sound_speed);
+                let here = flow.at(&three(&position), scene.numerics.sound_speed);
                 velocity = add(&velocity, &narrow(&here.velocity));
                 (density, shear_rate) = (here.density, here.shear_rate);
             }
@@ -218,10 +224,8 @@ fn up_axis(scene: &Scene) -> usize {
 /// Weight of the material above a place, along the up axis [Pa]: the starting pressure.
 fn load_above(scene: &Scene, place: &Point, up: usize) -> f64 {
     let g = scene.domain.gravity[up];
-    let dp = scene.numerics.spacing;
     let direction = if g < 0.0 { 1.0 } else { -1.0 };
-    let mut load = 0.0;
-    for body in &scene.bodies {
+    let above = |body: &Body| {
         let (lower, upper) = body.shape.bounds();
         let top = if direction > 0.0 {
             body.level.map_or(upper[up], |l| l.min(upper[up]))
@@ -229,21 +233,57 @@ fn load_above(scene: &Scene, place: &Point, up: usize) -> f64 {
             lower[up]
         };
         let height = direction * (top - place[up]);
-        if height <= 0.0 || !height.is_finite() {
-            continue;
-        }
         let rho = scene.materials[body.material].material.rest_density();
-        let count = (height / dp).ceil();
-        let step = height / count;
-        for n in 0..count as usize {
-            let mut x = *place;
-            x[up] += direction * (n as f64 + 0.5) * step;
-            if body.shape.contains(&x) {
-                load += rho * g.abs() * step;
-            }
+        if height > 0.0 && height.is_finite() {
+            rho * g.abs() * filled(scene, body, place, (up, direction), height)
+        } else {
+            0.0
         }
+    };
+    scene.bodies.iter().map(above).sum()
+}
+
+/// How much of the way of length `height` from `place` along an axis lies in a body [m].
+fn filled(
+    scene: &Scene,
+    body: &Body,
+    place: &Point,
+    (axis, direction): (usize, f64),
+    height: f64,
+) -> f64 {
+    let inside = |way: f64| {
+        let mut x = *place;
+        x[axis] += direction * way;
+        body.shape.contains(&x)
+    };
+    // Just short of the top, which belongs to no body.
+    let end = height * (1.0 - 1e-9);
+    let count = (height / scene.numerics.spacing).ceil().max(1.0);
+    let step = end / count;
+    let mut length = 0.0;
+    let mut was = inside(0.0);
+    for n in 0..count as usize {
+        let from = n as f64 * step;
+        let is = inside(from + step);
+        length += match (was, is) {
+            (true, true) => step,
+            (false, false) => 0.0,
+            _ => {
+                let (mut low, mut high) = (0.0, step);
+                for _ in 0..BISECTIONS {
+                    let middle = 0.5 * (low + high);
+                    if inside(from + middle) == was {
+                        low = middle;
+                    } else {
+                        high = middle;
+                    }
+                }
+                if was { low } else { step - low }
+            }
+        };
+        was = is;
     }
-    load
+    length
 }
 
 /// What all points of a wall or gate share.

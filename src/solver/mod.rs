@@ -17,6 +17,7 @@ mod kinematics;
 mod lean;
 mod lists;
 mod numerics;
+mod pack;
 mod pair;
 mod paper_a;
 mod paper_b;
@@ -319,6 +320,7 @@ impl<const D: usize> Solver<D> {
     /// Sorts a fresh state's particles and derives everything else from it.
     pub fn start(&mut self, state: &mut State<D>) {
         self.renew_lists(state);
+        self.pack(state);
         if self.has_pores && self.numerics.scheme == Scheme::Implicit {
             self.sweep_kinematics(state);
             self.seep(state);
@@ -467,13 +469,16 @@ impl<const D: usize> Solver<D> {
         Ok(())
     }
 
+    fn wrap(&self, position: &mut [Vector<D>]) {
+        if self.periodic.length.iter().any(|l| *l > 0.0) {
+            self.workers.each(position, |_, x| self.periodic.wrap(x));
+        }
+    }
+
     /// Periodic sides, and the check that nothing is lost.
     fn keep_inside(&self, state: &mut State<D>) -> Result<(), SolverError> {
         let grains = &mut state.grains;
-        if self.periodic.length.iter().any(|l| *l > 0.0) {
-            self.workers
-                .each(&mut grains.position, |_, x| self.periodic.wrap(x));
-        }
+        self.wrap(&mut grains.position);
         let is_lost = |i: usize| {
             let x = &grains.position[i];
             let inside = (0..D).all(|k| {

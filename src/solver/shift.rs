@@ -17,7 +17,7 @@ use super::Solver;
 use super::pair::Block;
 
 /// lambda of a particle at a free surface is below this [1].
-const SURFACE: f64 = 0.9;
+pub(super) const SURFACE: f64 = 0.9;
 
 /// lambda of drops and spray, which are left alone, is below this [1].
 const ALONE: f64 = 0.2;
@@ -26,9 +26,17 @@ const ALONE: f64 = 0.2;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Openness<const D: usize> {
     /// Smallest eigenvalue of M.
-    lambda: f64,
+    pub(super) lambda: f64,
     /// Its direction.
     normal: Vector<D>,
+}
+
+impl<const D: usize> Openness<D> {
+    /// That of a particle with neighbours all round.
+    pub(super) const INSIDE: Self = Self {
+        lambda: 1.0,
+        normal: [0.0; D],
+    };
 }
 
 impl<const D: usize> Solver<D> {
@@ -44,11 +52,7 @@ impl<const D: usize> Solver<D> {
         }
         let n = state.grains.len();
         let mut open = std::mem::take(&mut self.openness);
-        let still = Openness {
-            lambda: 1.0,
-            normal: [0.0; D],
-        };
-        open.resize(n, still);
+        open.resize(n, Openness::INSIDE);
         self.workers
             .blocks_read(&self.lists.blocks, &mut open, |block, first, out| {
                 for (row, o) in out.iter_mut().enumerate() {
@@ -70,7 +74,13 @@ impl<const D: usize> Solver<D> {
         self.shift = shift;
     }
 
-    fn openness(&self, state: &State<D>, block: &Block<D>, row: usize, i: usize) -> Openness<D> {
+    pub(super) fn openness(
+        &self,
+        state: &State<D>,
+        block: &Block<D>,
+        row: usize,
+        i: usize,
+    ) -> Openness<D> {
         let mut moment = [[0.0; D]; D];
         // -x (x) g = g (x) g/(V |F|), and V |F| = k/2.
         block.for_each_pair(row, |_, k, g| add_outer(&mut moment, 2.0 / k, &g, &g));

@@ -126,6 +126,7 @@ upper = [0.6, 0.6]
 [numerics]
 spacing = "10 mm"
 sound_speed = 20
+solver_tolerance = 1e-10
 sleep = false
 [materials.sand]
 law = "mu_i"
@@ -147,7 +148,8 @@ until = "1 s"
     Bench::new(&scene::parse("bin", &text).unwrap())
 }
 
-/// A bin that moves at constant velocity is a bin at rest, seen from a train.
+/// A bin that moves at constant velocity is a bin at rest, seen from a train. Solved far below the tolerance of a usual run: one
+/// iteration more or less is that much.
 #[test]
 fn sand_rests_in_a_bin_that_moves() {
     let mut still = bin("0, 0", "");
@@ -173,5 +175,5 @@ fn sand_rests_in_a_bin_that_moves() {
         }
     }
     println!("differs by {worst:.1e} m and m/s; the still one has {fastest:.1e} m/s");
-    assert!(worst < 1e-6);
+    assert!(worst < 1e-12);
 }
