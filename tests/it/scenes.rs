@@ -165,6 +165,35 @@ fn the_cases_of_paper_a_load_and_are_what_its_tables_say() {
     );
 }
 
+/// Paper B's own cases are its sections 3.1 and 3.2.
+#[test]
+fn the_cases_of_paper_b_load_and_are_listed() {
+    let list = fs::read_to_string(root().join("cases/README.md")).unwrap();
+    let files = toml_files("cases/paper_b");
+    assert_eq!(files.len(), 6);
+    for path in &files {
+        let scene = scene::load(path).unwrap_or_else(|e| panic!("{e}"));
+        let stem = path.file_stem().unwrap().to_str().unwrap();
+        assert_eq!(scene.name, stem);
+        assert!(
+            list.contains(&format!("`paper_b/{stem}`")),
+            "{stem} is not listed"
+        );
+        let Scheme::PaperB(choices) = scene.numerics.scheme else {
+            panic!("{stem}: {:?}", scene.numerics.scheme);
+        };
+        // Its Table 1.
+        let expected = if stem == "clay_dam_break" {
+            (1.0, 0.1)
+        } else {
+            (0.01, 0.01)
+        };
+        let got = (choices.relaxation_factor, choices.stiffening_time);
+        assert_eq!(got, expected, "{stem}");
+        assert_eq!(scene.numerics.smoothing_ratio, 2.0);
+    }
+}
+
 /// A message that a bad file expects: line and a part of it.
 struct Expected<'t> {
     line: usize,
@@ -344,7 +373,8 @@ fn walk(value: &Value, visit: &mut impl FnMut(&serde_json::Map<String, Value>)) 
 fn every_case_meets_the_schema_and_wrong_ones_do_not() {
     let schema: Value = serde_json::from_str(&scene::schema()).unwrap();
     let cases = toml_files("cases").into_iter();
-    for path in cases.chain(toml_files("cases/paper_a")) {
+    let papers = toml_files("cases/paper_a").into_iter();
+    for path in cases.chain(papers).chain(toml_files("cases/paper_b")) {
         let text = fs::read_to_string(&path).unwrap();
         let read = |text: &str| {
             let table: toml::Table = text.parse().unwrap();

@@ -1,4 +1,4 @@
-//! What a run will cost, from a short measurement of its first communication steps.
+//! What a run will cost, from a short measurement of its first steps.
 
 use crate::cli::CliError;
 use crate::cli::clock::Stopwatch;
@@ -9,8 +9,11 @@ use crate::scene::Scene;
 use crate::solver::Scheme;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Wall time a measurement may take [s]; it ends at the communication point after that.
+/// Wall time a measurement may take [s]; it ends after the step in hand.
 const BUDGET: f64 = 3.0;
+
+/// Acoustic steps in the first piece of it, before it is known what a step costs.
+const FIRST_STEPS: f64 = 5.0;
 
 /// What the first steps took.
 pub(super) struct Measured {
@@ -44,9 +47,15 @@ pub(super) fn measure(component: &mut Component) -> Result<Measured, CliError> {
         wall: 0.0,
         cpu: 0.0,
     };
+    let numerics = &component.scene().numerics;
+    let acoustic =
+        numerics.courant * numerics.smoothing_ratio * numerics.spacing / numerics.sound_speed;
     let watch = Stopwatch::start();
+    // A communication step of a large scene may take an hour: a few internal steps say how far the budget reaches.
+    let mut room = FIRST_STEPS * acoustic;
     while let Some(next) = next_point(component.time(), plan.step, plan.until) {
         let time = component.time();
+        let next = next.min(time + room);
         let (references, values) = component.scheduled(time);
         component.set(&references, &values)?;
         let report = component.do_step(time, next - time)?;
@@ -54,6 +63,7 @@ pub(super) fn measure(component: &mut Component) -> Result<Measured, CliError> {
             measured.smallest_step = report.smallest_step;
             measured.bound_by = bound_name(report.bound_by);
         }
+        room = 0.5 * BUDGET * component.time() / watch.wall().max(f64::MIN_POSITIVE);
         bar.set_position((watch.wall() * 1e3) as u64);
         bar.set_message(format!("t = {:.4} s", component.time()));
         if watch.wall() > BUDGET {
