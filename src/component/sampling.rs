@@ -8,15 +8,24 @@ use crate::gauge::{
     self, Crossing, DepthLine, Field, Front, MassBox, PressureProbe, Profile, Reading,
 };
 use crate::gauge::{Validity, View};
-use crate::scene::{ForceTarget, Gauge, GaugeKind, Point, Scene};
+use crate::scene::{ForceTarget, Gauge, GaugeKind, Point, PressureQuantity, Scene};
 use crate::state::Grains;
 
 /// All gauges of a scene in D dimensions.
 #[derive(Clone, Debug)]
 pub(crate) struct Sampler<const D: usize> {
     gauges: Vec<Kind<D>>,
-    /// The one material that each gauge sees, if not all.
-    materials: Vec<Option<u8>>,
+    /// What each gauge sees.
+    sights: Vec<Sight>,
+}
+
+/// What a gauge sees of the particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Sight {
+    /// The one material, if not all.
+    pub(crate) material: Option<u8>,
+    /// Which pressure.
+    pub(crate) quantity: PressureQuantity,
 }
 
 #[derive(Clone, Debug)]
@@ -38,10 +47,16 @@ impl<const D: usize> Sampler<D> {
             domain.periodic[a].then_some(domain.upper[a] - domain.lower[a])
         });
         let gauges = scene.gauges.iter().map(|g| kind(g, &period)).collect();
-        let materials = scene.gauges.iter().map(|g| g.material.map(|m| m as u8));
+        let sight = |g: &Gauge| Sight {
+            material: g.material.map(|m| m as u8),
+            quantity: match g.kind {
+                GaugeKind::Pressure { quantity, .. } => quantity,
+                _ => PressureQuantity::Total,
+            },
+        };
         Self {
             gauges,
-            materials: materials.collect(),
+            sights: scene.gauges.iter().map(sight).collect(),
         }
     }
 
@@ -63,10 +78,10 @@ impl<const D: usize> Sampler<D> {
 
     /// Counts the particles that crossed sections in one internal step; `before` holds their positions then [m].
     pub(crate) fn count(&mut self, before: &[[f64; D]], grains: &Grains<D>) {
-        for (gauge, material) in self.gauges.iter_mut().zip(&self.materials) {
+        for (gauge, sight) in self.gauges.iter_mut().zip(&self.sights) {
             if let Kind::Discharge { section, .. } = gauge {
                 for (i, from) in before.iter().enumerate() {
-                    if material.is_none_or(|m| m == grains.phase[i]) {
+                    if sight.material.is_none_or(|m| m == grains.phase[i]) {
                         section.add(from, &grains.position[i], grains.mass[i]);
                     }
                 }
@@ -74,9 +89,9 @@ impl<const D: usize> Sampler<D> {
         }
     }
 
-    /// Materials that some gauge sees alone, each once; and `None` if some gauge sees all.
-    pub(crate) fn seen(&self) -> Vec<Option<u8>> {
-        let mut seen: Vec<Option<u8>> = self.materials.clone();
+    /// What some gauge sees, each once.
+    pub(crate) fn seen(&self) -> Vec<Sight> {
+        let mut seen = self.sights.clone();
         seen.sort_unstable();
         seen.dedup();
         seen
@@ -107,23 +122,23 @@ impl<const D: usize> Sampler<D> {
         true
     }
 
-    /// Readings of all gauges; `view` shows one material, or all. `step` is the length of the last communication step [s],
+    /// Readings of all gauges; `view` shows what a sight is of. `step` is the length of the last communication step [s],
     /// 0 before the first.
     pub(crate) fn sample<'v>(
         &self,
-        view: impl Fn(Option<u8>) -> View<'v, D>,
+        view: impl Fn(Sight) -> View<'v, D>,
         devices: &Devices,
         step: f64,
     ) -> Vec<Reading> {
-        let read = |(gauge, material): (&Kind<D>, &Option<u8>)| match gauge {
-            Kind::Field(field) => gauge::sample(field, &view(*material)),
-            Kind::Discharge { section, .. } if view(*material).is_outside(&section.centre()) => {
+        let read = |(gauge, sight): (&Kind<D>, &Sight)| match gauge {
+            Kind::Field(field) => gauge::sample(field, &view(*sight)),
+            Kind::Discharge { section, .. } if view(*sight).is_outside(&section.centre()) => {
                 Reading::none(2, Validity::Outside)
             }
             Kind::Discharge { section, before } => discharge(section, *before, step),
             Kind::Force(target) => force::<D>(*target, devices, step),
         };
-        self.gauges.iter().zip(&self.materials).map(read).collect()
+        self.gauges.iter().zip(&self.sights).map(read).collect()
     }
 
     /// As [`Sampler::sample`] of particles that have not moved since `still` was sampled.
@@ -188,7 +203,9 @@ fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
             before: 0.0,
         },
         GaugeKind::Force { on } => Kind::Force(*on),
-        GaugeKind::Pressure { at } => Kind::Field(Field::Pressure(PressureProbe { at: flat(at) })),
+        GaugeKind::Pressure { at, .. } => {
+            Kind::Field(Field::Pressure(PressureProbe { at: flat(at) }))
+        }
         GaugeKind::Mass { lower, upper } => Kind::Field(Field::Mass(MassBox {
             lower: flat(lower),
             upper: flat(upper),

@@ -5,12 +5,12 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use super::engine::{Advance, Devices, Engine, GateState, InflowState, Inputs, SolverError};
-use super::sampling::Sampler;
+use super::sampling::{Sampler, Sight};
 use super::snapshot;
 use super::{Error, MassLedger, ParticleView, Statistics, Totals};
 use crate::gauge::{Reading, View};
 use crate::math::{Geometry, Vector, dot};
-use crate::scene::{self, Dimension, Scene};
+use crate::scene::{self, Dimension, PressureQuantity, Scene};
 use crate::solver::{Solver, StepInputs, three};
 use crate::state::{CellGrid, RestState, State};
 
@@ -21,7 +21,7 @@ struct Saved<const D: usize> {
     crossed: Vec<f64>,
 }
 
-/// Particles that gauges see: of one material, or all.
+/// Particles that gauges see: of one material, or all, with one kind of pressure.
 struct Shown<const D: usize> {
     position: Vec<Vector<D>>,
     mass: Vec<f64>,
@@ -86,10 +86,13 @@ impl<const D: usize> Simulation<D> {
 
     /// Particles of a material, or all. Grains that an outflow has taken stay in the arrays until lists are rebuilt; gauges do
     /// not see them.
-    fn show(&self, material: Option<u8>) -> Shown<D> {
+    fn show(&self, sight: Sight) -> Shown<D> {
         let grains = &self.state.grains;
-        let is_seen =
-            |i: &usize| !grains.drained[*i] && material.is_none_or(|m| m == grains.phase[*i]);
+        let material = sight.material;
+        let (pressure, has): (Vec<f64>, Vec<bool>) = self.pressures(sight.quantity);
+        let is_seen = |i: &usize| {
+            !grains.drained[*i] && has[*i] && material.is_none_or(|m| m == grains.phase[*i])
+        };
         let seen: Vec<usize> = (0..grains.len()).filter(is_seen).collect();
         let pick = |values: &[f64]| -> Vec<f64> { seen.iter().map(|&i| values[i]).collect() };
         let position: Vec<Vector<D>> = seen.iter().map(|&i| grains.position[i]).collect();
@@ -98,7 +101,32 @@ impl<const D: usize> Simulation<D> {
             position,
             mass: pick(&grains.mass),
             density: pick(&grains.density),
-            pressure: pick(self.solver.pressure()),
+            pressure: pick(&pressure),
+        }
+    }
+
+    /// One kind of pressure of each particle [Pa], and whether it has that.
+    fn pressures(&self, quantity: PressureQuantity) -> (Vec<f64>, Vec<bool>) {
+        let all = 0..self.state.grains.len();
+        let total = self.solver.pressure();
+        match quantity {
+            PressureQuantity::Total => (total.to_vec(), vec![true; total.len()]),
+            PressureQuantity::Effective => {
+                let is_grains = |i| !self.solver.material_of(&self.state, i).is_fluid();
+                let effective = self.solver.effective_pressure().to_vec();
+                (effective, all.map(is_grains).collect())
+            }
+            PressureQuantity::Pore => all
+                .map(|i| {
+                    let material = self.solver.material_of(&self.state, i);
+                    if material.is_fluid() {
+                        (total[i], true)
+                    } else {
+                        let pore = self.solver.pore_pressure(&self.state, i);
+                        (pore, material.is_saturated())
+                    }
+                })
+                .unzip(),
         }
     }
 
@@ -272,15 +300,15 @@ impl<const D: usize> Engine for Simulation<D> {
             .map(|(x, _)| *x)
             .collect();
         let solid = self.cells(&solid);
-        let shown: Vec<(Option<u8>, Shown<D>)> = self
+        let shown: Vec<(Sight, Shown<D>)> = self
             .sampler
             .seen()
             .into_iter()
-            .map(|material| (material, self.show(material)))
+            .map(|sight| (sight, self.show(sight)))
             .collect();
-        let view = |material: Option<u8>| {
-            // Every material that a gauge sees is shown.
-            let place = shown.iter().position(|(m, _)| *m == material);
+        let view = |sight: Sight| {
+            // All that a gauge sees is shown.
+            let place = shown.iter().position(|(s, _)| *s == sight);
             let shown = &shown[place.unwrap_or(0)].1;
             View {
                 position: &shown.position,

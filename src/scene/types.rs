@@ -312,10 +312,12 @@ pub enum GaugeKind {
         /// The wall or gate.
         on: ForceTarget,
     },
-    /// Pressure at a point, Shepard mean of particles [Pa].
+    /// Pressure at a point, that of a linear fit to particles [Pa].
     Pressure {
         /// The point [m].
         at: Point,
+        /// Which pressure.
+        quantity: PressureQuantity,
     },
     /// Mass in a box [kg].
     Mass {
@@ -336,6 +338,18 @@ pub enum GaugeKind {
         /// Depth that counts [m], at least one spacing.
         least_depth: f64,
     },
+}
+
+/// Which pressure a gauge reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum PressureQuantity {
+    /// Of the whole material, what is in its pores included.
+    #[default]
+    Total,
+    /// Of the fluid: of fluids, and in the pores of saturated material.
+    Pore,
+    /// Of grain on grain: of materials with friction, what the pores do not carry.
+    Effective,
 }
 
 /// What a force gauge reads.

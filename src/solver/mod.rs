@@ -612,6 +612,12 @@ impl<const D: usize> Solver<D> {
             .map_or(0.0, |p| p.max(0.0))
     }
 
+    /// The material of a particle.
+    #[must_use]
+    pub fn material_of(&self, state: &State<D>, i: usize) -> &Material {
+        &self.materials[state.grains.phase[i] as usize]
+    }
+
     /// Inertial number of each particle [1].
     #[must_use]
     pub fn inertial_number(&self) -> &[f64] {

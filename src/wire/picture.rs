@@ -152,7 +152,7 @@ impl Artist<'_> {
                 Some(*from),
             ),
             GaugeKind::Discharge { from, to, span } => (self.face(*from, *to, *span), Some(*from)),
-            GaugeKind::Pressure { at } => (Vec::new(), Some(*at)),
+            GaugeKind::Pressure { at, .. } => (Vec::new(), Some(*at)),
             GaugeKind::Front {
                 origin, direction, ..
             } => {

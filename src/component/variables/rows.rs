@@ -4,7 +4,7 @@
 //! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals.
 
 use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable};
-use crate::scene::{Adjustable, Gate, Gauge, GaugeKind, Inflow, Outflow, Scene};
+use crate::scene::{Adjustable, Gate, Gauge, GaugeKind, Inflow, Outflow, PressureQuantity, Scene};
 
 /// Where a row's value comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -349,8 +349,13 @@ fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
                 .map(force)
                 .collect()
         }
-        GaugeKind::Pressure { .. } => {
-            vec![reading("pressure", "Pa", 0, "pressure of the material")]
+        GaugeKind::Pressure { quantity, .. } => {
+            let text = match quantity {
+                PressureQuantity::Total => "pressure of the material",
+                PressureQuantity::Pore => "pressure of fluids and in pores",
+                PressureQuantity::Effective => "pressure of grain on grain",
+            };
+            vec![reading("pressure", "Pa", 0, text)]
         }
         GaugeKind::Mass { .. } => vec![reading("mass", "kg", 0, "mass in the box")],
         GaugeKind::Front { .. } => vec![

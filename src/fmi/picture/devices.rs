@@ -197,7 +197,7 @@ fn draw_gauge(svg: &mut Svg<'_>, gauge: &Gauge, scene: &Scene) {
             dot(svg, at, &title(&format!("force on {what}")));
             (at.0, at.1 + 32.0)
         }
-        GaugeKind::Pressure { at } => {
+        GaugeKind::Pressure { at, .. } => {
             let at = view.place(*at);
             dot(svg, at, &title("pressure at this point"));
             at

@@ -2,9 +2,10 @@
 
 use super::{Lift, dot};
 use crate::scene::raw::{
-    At, Coordinates, Entry, Length, Place, Ratio, RawDepth, RawFront, RawGauge, RawProfile,
+    At, Coordinates, Entry, Length, Place, QuantityWord, Ratio, RawDepth, RawFront, RawGauge,
+    RawMaterial, RawPressure, RawProfile,
 };
-use crate::scene::types::{ForceTarget, Gauge, GaugeKind, Point};
+use crate::scene::types::{ForceTarget, Gauge, GaugeKind, Point, PressureQuantity};
 
 type Up<'a> = Option<&'a At<Coordinates<Ratio>>>;
 
@@ -41,7 +42,8 @@ impl Lift<'_> {
             }
             RawGauge::Pressure(raw) => {
                 let at = self.point(raw.at.as_ref()?)?;
-                Some(GaugeKind::Pressure { at })
+                let quantity = self.quantity(raw)?;
+                Some(GaugeKind::Pressure { at, quantity })
             }
             RawGauge::Front(raw) => self.front(raw),
             RawGauge::Mass(raw) => {
@@ -49,6 +51,33 @@ impl Lift<'_> {
                 Some(GaugeKind::Mass { lower, upper })
             }
         }
+    }
+
+    /// Which pressure; that of pores only where a material has some or is a fluid.
+    fn quantity(&mut self, raw: &RawPressure) -> Option<PressureQuantity> {
+        let at = raw.quantity.as_ref()?;
+        Some(match at.value {
+            QuantityWord::Total => PressureQuantity::Total,
+            QuantityWord::Effective => PressureQuantity::Effective,
+            QuantityWord::Pore => {
+                let materials = self.raw.materials.iter().flat_map(|m| &m.value.0);
+                let wet = |raw: &RawMaterial| match raw {
+                    RawMaterial::Fluid(_) => true,
+                    RawMaterial::MuI(raw) => raw.pore_fluid.is_some(),
+                    RawMaterial::BarkerGray(raw) => raw.pore_fluid.is_some(),
+                    RawMaterial::ConstantFriction(raw) => raw.pore_fluid.is_some(),
+                };
+                if !materials.filter_map(|e| e.value.as_ref()).any(wet) {
+                    self.problems.report(
+                        &at.place,
+                        "\"pore\" where no material is a fluid or saturated",
+                        "\"total\" or \"effective\", or a material with pore_fluid",
+                        "choose another quantity, or add pore_fluid to a material",
+                    );
+                }
+                PressureQuantity::Pore
+            }
+        })
     }
 
     /// The one material that a gauge sees, `Some(None)` for all; `None` where a problem was reported.

@@ -396,8 +396,22 @@ table! {
     RawPressure {
         /// The point.
         required at: Coordinates<Length>;
+        /// Which pressure: of the whole material, in the pores, or of grain on grain.
+        optional quantity: QuantityWord, default "total";
         /// Only this material; all if left out.
         optional material: Text;
+    }
+}
+
+choice! {
+    /// Which pressure a gauge reads.
+    QuantityWord {
+        /// that of the material with all that is in its pores
+        "total" => Total,
+        /// that of fluids, and of the fluid in the pores of saturated materials
+        "pore" => Pore,
+        /// that of grain on grain, what the pores do not carry: materials with friction only
+        "effective" => Effective,
     }
 }
 

@@ -129,6 +129,14 @@ material = "silt"
 [gauges.low]
 kind = "pressure"
 at = [0.075, 0.02]
+[gauges.pore]
+kind = "pressure"
+at = [0.075, 0.02]
+quantity = "pore"
+[gauges.effective]
+kind = "pressure"
+at = [0.075, 0.02]
+quantity = "effective"
 [gauges.high]
 kind = "pressure"
 at = [0.075, 0.08]
@@ -162,6 +170,8 @@ fn water_over_silt_rests_with_its_weight() {
         );
     };
     near("gauge.low.pressure", 0.04 * water + 0.04 * silt, 0.01);
+    near("gauge.pore.pressure", 0.08 * water, 0.01);
+    near("gauge.effective.pressure", 0.04 * (silt - water), 0.03);
     near("gauge.high.pressure", 0.02 * water, 0.03);
     near("gauge.level.depth", 0.1, 0.01);
     near("gauge.silt.depth", 0.06, 0.01);
@@ -216,6 +226,20 @@ fn the_pores_of_a_bed_without_water_above_are_hydrostatic_from_its_surface() {
         println!("dry bed, h/dp {ratio}: pore pressure rms {error:.4} of that at the floor");
         assert!(error < 0.02, "{ratio}: {error}");
     }
+}
+
+#[test]
+fn pores_are_asked_for_where_there_are_some() {
+    let text = layers("free_slip").source;
+    let dry = text
+        .replace("pore_fluid = \"water\"\n", "")
+        .replace("preset = \"water\"", "preset = \"sand_04\"")
+        .replace("law = \"fluid\"", "law = \"mu_i\"");
+    let message = scene::parse("dry.toml", &dry).unwrap_err().to_string();
+    assert!(
+        message.contains("\"pore\" where no material is a fluid or saturated"),
+        "{message}"
+    );
 }
 
 /// Silt and water side by side in free space, turning and shearing.
