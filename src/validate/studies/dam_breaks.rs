@@ -29,7 +29,7 @@ const SURFACE: &str = "gauge.surface.depth";
 
 /// Particles over the depth.
 fn rows(effort: Effort) -> [u32; 2] {
-    effort.pick([50, 100], [12, 18])
+    effort.pick([30, 60], [12, 18])
 }
 
 fn member(rows: u32, wet: bool) -> Result<Member, String> {

@@ -9,11 +9,13 @@ mod incline;
 mod janssen;
 mod rest;
 mod silo;
+mod silted_dams;
+mod slump;
 
 use super::Study;
 
 /// All studies, in the order in which they are listed and run.
-pub const ALL: [Study; 12] = [
+pub const ALL: [Study; 14] = [
     incline::STUDY,
     columns::STUDY,
     columns::axisymmetric::STUDY,
@@ -26,6 +28,8 @@ pub const ALL: [Study; 12] = [
     controls::STUDY,
     channel::STUDY,
     dam_breaks::STUDY,
+    slump::STUDY,
+    silted_dams::STUDY,
 ];
 
 /// A study by name.
