@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn what_is_outside_a_radius_is_the_integral_there() {
         let (k2, k3) = (WendlandC2::<2>::new(0.7), WendlandC2::<3>::new(0.7));
-        for r in [0.0, 0.2, 0.7, 1.1, 1.5] {
+        for r in [0.0_f64, 0.2, 0.7, 1.1, 1.5] {
             let n = 20_000;
             let dr = (1.4 - r).max(0.0) / f64::from(n);
             let (mut s2, mut s3) = (0.0, 0.0);
