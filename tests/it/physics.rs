@@ -18,6 +18,8 @@ mod walls;
 
 use sandgate::component::{Component, ValueReference};
 use sandgate::scene::{self, Scene};
+use sandgate::solver::{Plan, Solver, StepInputs};
+use sandgate::state::State;
 
 /// A case of the repository, with edits of its text as (old, new).
 fn case(name: &str, edits: &[(&str, &str)]) -> Scene {
@@ -78,4 +80,32 @@ impl Unit {
             self.step();
         }
     }
+}
+
+/// A planar scene without devices after `time` [s], and the solver that stepped it.
+fn solve(scene: &Scene, time: f64) -> (Solver<2>, State<2>) {
+    let (plan, state) = scene::build::<2>(scene).unwrap();
+    advance(plan, state, time)
+}
+
+/// As [`solve`], from a plan and a state of its own.
+fn advance(plan: Plan<2>, mut state: State<2>, time: f64) -> (Solver<2>, State<2>) {
+    let mut solver = Solver::new(plan, 1);
+    solver.start(&mut state);
+    let inputs = StepInputs {
+        openings: &[],
+        rates: &[],
+    };
+    while state.time < time {
+        solver
+            .step(&mut state, time, &inputs, &mut |_, _| {})
+            .unwrap_or_else(|e| panic!("{e}"));
+    }
+    (solver, state)
+}
+
+/// Sum of m v [kg m/s].
+fn momentum(state: &State<2>) -> [f64; 2] {
+    let rows = state.grains.mass.iter().zip(&state.grains.velocity);
+    rows.fold([0.0; 2], |s, (m, v)| [s[0] + m * v[0], s[1] + m * v[1]])
 }

@@ -123,7 +123,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
         let found = results.finished(name);
         report.metrics.push(Metric::new(
             format!("{text}: runs to its end"),
-            Some(f64::from(u8::from(found.is_some()))),
+            found.map(|_| 1.0),
             Rule::AtLeast(1.0),
             "stable with any of these numbers",
         ));

@@ -12,8 +12,8 @@ pub(super) const STUDY: Study = Study {
     about: "A block 0.26 m long and 0.13 m high, rho = 1540 kg/m^3, tau_0 = 30 Pa, K = 50 Pa s, spreads from a wall that slips over a \
 floor that does not: slowly (Re < 1), c0 = 10 sqrt(g H). Where it stops the floor bears the yield stress all along, tau_0 = -rho g h h':\n\n\
     h = sqrt(2 tau_0 (x_inf - x)/(rho g)),   x_inf = (9 A^2 rho g/(8 tau_0))^(1/3) = 0.865 m,   A = 0.0338 m^2\n\n\
-(Liu and Mei 1989, doi 10.1017/S0022112089002685; thin layers). It gets there as t^-1, so the front at the end is the one asked for only \
-if the run is long; fronts at half the time stand beside it.",
+(Liu and Mei 1989, doi 10.1017/S0022112089002685; thin layers). It gets there about as 1/t: fronts \
+at half the time stand beside those at the end.",
     members,
     analyse,
 };
@@ -30,7 +30,7 @@ const FEET: f64 = 0.02;
 
 /// Rows over the height, and the end [s].
 fn plan(effort: Effort) -> (u32, f64) {
-    effort.pick((20, 160.0), (10, 4.0))
+    effort.pick((20, 240.0), (10, 4.0))
 }
 
 fn x_inf() -> f64 {

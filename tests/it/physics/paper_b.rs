@@ -1,9 +1,7 @@
 //! Scheme `paper_b`: what its equations must give, in runs of seconds.
 
-use super::Unit;
+use super::{Unit, advance, momentum, solve};
 use sandgate::scene::{self, Scene};
-use sandgate::solver::{Plan, Solver, StepInputs};
-use sandgate::state::State;
 
 const G: f64 = 9.81;
 
@@ -181,11 +179,6 @@ until = 0.1
     ))
 }
 
-fn momentum(state: &State<2>) -> [f64; 2] {
-    let rows = state.grains.mass.iter().zip(&state.grains.velocity);
-    rows.fold([0.0; 2], |s, (m, v)| [s[0] + m * v[0], s[1] + m * v[1]])
-}
-
 #[test]
 fn momentum_stays_without_attenuation_only() {
     let (_, start) = scene::build::<2>(&block("30 Pa", 1.0)).unwrap();
@@ -274,24 +267,4 @@ until = 0.1
     ] {
         assert!(error.contains(what), "{what} is not in {error}");
     }
-}
-
-fn solve(scene: &Scene, time: f64) -> (Solver<2>, State<2>) {
-    let (plan, state) = scene::build::<2>(scene).unwrap();
-    advance(plan, state, time)
-}
-
-fn advance(plan: Plan<2>, mut state: State<2>, time: f64) -> (Solver<2>, State<2>) {
-    let mut solver = Solver::new(plan, 1);
-    solver.start(&mut state);
-    let inputs = StepInputs {
-        openings: &[],
-        rates: &[],
-    };
-    while state.time < time {
-        solver
-            .step(&mut state, time, &inputs, &mut |_, _| {})
-            .unwrap_or_else(|e| panic!("{e}"));
-    }
-    (solver, state)
 }

@@ -1,8 +1,7 @@
 //! Several phases: fluids in channels, water over silt, saturated beds, what falls together. Small scenes, exact laws.
 
-use super::{Unit, case};
+use super::{Unit, case, momentum, solve};
 use sandgate::scene::{self, Scene};
-use sandgate::solver::{Solver, StepInputs};
 use sandgate::state::State;
 
 const G: f64 = 9.81;
@@ -317,28 +316,7 @@ fn a_silted_dam_goes_on_from_a_saved_state_bit_for_bit() {
     assert!(whole.get("gauge.silt_over_sill.mass").is_finite());
 }
 
-fn momentum(state: &State<2>) -> [f64; 2] {
-    let rows = state.grains.mass.iter().zip(&state.grains.velocity);
-    rows.fold([0.0; 2], |s, (m, v)| [s[0] + m * v[0], s[1] + m * v[1]])
-}
-
 fn run(scene: &Scene, time: f64) -> (State<2>, State<2>) {
     let (_, start) = scene::build::<2>(scene).unwrap();
     (start, solve(scene, time).1)
-}
-
-fn solve(scene: &Scene, time: f64) -> (Solver<2>, State<2>) {
-    let (plan, mut state) = scene::build::<2>(scene).unwrap();
-    let mut solver = Solver::new(plan, 1);
-    solver.start(&mut state);
-    let inputs = StepInputs {
-        openings: &[],
-        rates: &[],
-    };
-    while state.time < time {
-        solver
-            .step(&mut state, time, &inputs, &mut |_, _| {})
-            .unwrap_or_else(|e| panic!("{e}"));
-    }
-    (solver, state)
 }
