@@ -4,11 +4,13 @@
 //! (docs/theory.md, "Walls"): no distance to the wall is needed.
 
 mod element;
+mod ends;
 mod mover;
 mod plate;
 mod points;
 
 pub use element::{Element, box_elements, plane_elements, polyline_elements};
+pub use ends::{End, free_ends};
 pub use mover::{Mover, RigidMotion};
 pub use plate::Plate;
 pub use points::{

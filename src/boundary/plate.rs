@@ -126,16 +126,15 @@ impl<const D: usize> Plate<D> {
         }
     }
 
-    /// Whether a grain at `x` touches the leading edge at an opening: closer to it than a tenth of a spacing or up to
-    /// half a spacing past it, between the plate's faces. What lies on a face is not in the way.
+    /// Whether a grain at `x` touches the leading edge at an opening: closer to it than `reach` spacings or up to
+    /// half a spacing past it, between the plate's faces. What lies in front of a face is not in the way.
     #[must_use]
-    pub fn stopped_by(&self, x: &Vector<D>, opening: f64, spacing: f64) -> bool {
+    pub fn stopped_by(&self, x: &Vector<D>, opening: f64, spacing: f64, reach: f64) -> bool {
         let d = sub(x, &self.from);
         let past = dot(&d, &self.axis) - opening * self.length;
         let depth = -dot(&d, &self.normal);
-        let rim = 0.25 * spacing;
-        (-0.1 * spacing..0.5 * spacing).contains(&past)
-            && (rim..self.thickness - rim).contains(&depth)
+        (-reach * spacing..0.5 * spacing).contains(&past)
+            && (0.0..self.thickness).contains(&depth)
             && self
                 .across
                 .is_none_or(|(u, width)| (0.0..width).contains(&dot(&d, &u)))

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::ends::End;
 use crate::math::{Vector, add, dot, norm, scale, sub};
 
 /// Rows of points behind a wall's surface: enough for a support of 2 h at h/dp <= 2.
@@ -35,6 +36,10 @@ pub struct WallPoints<const D: usize> {
     pub group: Vec<u16>,
     /// One per wall, then one per gate.
     pub groups: Vec<GroupSpec>,
+    /// Faces at free ends of walls.
+    pub ends: Vec<End<D>>,
+    /// The end that each point belongs to, counted from 1, 0: none; shorter than the points or empty where there are none.
+    pub end: Vec<u16>,
 }
 
 impl<const D: usize> WallPoints<D> {
@@ -78,11 +83,16 @@ impl<const D: usize> WallPoints<D> {
         fn pick<T: Copy>(field: &mut Vec<T>, keep: &[usize]) {
             *field = keep.iter().map(|&i| field[i]).collect();
         }
+        let count = self.len();
         pick(&mut self.position, keep);
         pick(&mut self.velocity, keep);
         pick(&mut self.normal, keep);
         pick(&mut self.weight, keep);
         pick(&mut self.group, keep);
+        if !self.ends.is_empty() {
+            self.end.resize(count, 0);
+            pick(&mut self.end, keep);
+        }
     }
 
     /// Drops points closer than half a spacing to an earlier one (walls that overlap at corners).

@@ -1,7 +1,8 @@
 //! Scene to what the solver runs: particles, wall points, devices. The last function that knows scenes.
 
 use crate::boundary::{
-    GroupSpec, Mover, Plate, RigidMotion, WallPoints, box_points, joined_points, plane_points,
+    End, GroupSpec, Mover, Plate, ROWS, RigidMotion, WallPoints, box_points, free_ends,
+    joined_points, plane_points,
 };
 use crate::math::{Geometry, Vector, add, dot, norm, scale};
 use crate::shape::lattice;
@@ -357,6 +358,20 @@ fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D>
                         weight,
                         n as u16,
                     );
+                }
+                if !closed && !wall.rigid {
+                    let (depth, rim) = (ROWS as f64 * dp, 0.25 * dp);
+                    for (end, length) in free_ends(corners, joints, depth, rim) {
+                        let wide = |x: [f64; 2]| narrow(&[x[0], x[1], 0.0]);
+                        let end = End {
+                            point: wide(end.point),
+                            outward: wide(end.outward),
+                            normal: wide(end.normal),
+                            depth,
+                            rim,
+                        };
+                        points.add_end(end, length, n as u16);
+                    }
                 }
             }
             WallGeometry::Box { lower, upper } => {

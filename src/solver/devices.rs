@@ -5,6 +5,10 @@ use crate::state::State;
 
 use super::Solver;
 
+/// Distance to the leading edge at which a grain stops a plate, over the spacing; of one that is in a wall already.
+const TOUCH: f64 = 0.25;
+const PRESSED: f64 = 0.75;
+
 /// A face that lets rows of particles in.
 #[derive(Clone, Debug)]
 pub struct Source<const D: usize> {
@@ -82,8 +86,16 @@ impl<const D: usize> Solver<D> {
     /// Whether a grain stands against the leading edge of a plate that wants to close.
     fn is_blocked(&self, state: &State<D>, gate: usize) -> bool {
         let (plate, opening) = (&self.plates[gate], state.gates[gate].opening);
-        let stops = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing);
+        let stops = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing, TOUCH);
+        // What is pressed between the edge and another wall stops it from further away.
+        let squeezed = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing, PRESSED);
+        let blocks = self.lists.blocks.iter().enumerate();
+        let mut pushed = blocks.flat_map(|(b, block)| {
+            let rows = block.wall_rows.iter().filter(|w| w.barrier > 0.0);
+            rows.map(move |w| b * CHUNK + w.row as usize)
+        });
         state.grains.position.iter().any(stops)
+            || pushed.any(|i| state.grains.position.get(i).is_some_and(squeezed))
     }
 
     /// Counts and marks what has entered a sink; removal waits for the next lists.
@@ -156,6 +168,7 @@ impl<const D: usize> Solver<D> {
                 let i = b * CHUNK + row;
                 let seen = wall_rows.next_if(|w| w.row as usize == row);
                 let flat = seen.is_some_and(|w| w.flat);
+                let barrier = seen.map_or(0.0, |w| w.barrier);
                 let (xi, vi) = (&state.grains.position[i], &self.viscous.velocity[i]);
                 if block.wall_row(row).is_empty() {
                     continue;
@@ -191,7 +204,15 @@ impl<const D: usize> Solver<D> {
                     force = add(&force, &scale(drag, &pg));
                     // Each point's part of K (a - g), as it was counted.
                     let n = self.wall_normal(xi, w, state);
-                    let part = scale(-vf * dot(&n, &x).powi(2), &seen(leant));
+                    let mut part = scale(-vf * dot(&n, &x).powi(2), &seen(leant));
+                    if barrier > 0.0 {
+                        let mut away = self.barrier.slope(&x, r, weight);
+                        if let Some((x, r)) = self.wall_image(xi, w) {
+                            away = add(&away, &self.barrier.slope(&x, r, weight));
+                        }
+                        let impulse = -dt * barrier * state.grains.mass[i];
+                        part = add(&part, &scale(impulse, &away));
+                    }
                     for k in 0..D {
                         state.impulse[group][k] -= dt * self.width * volume * force[k] + part[k];
                     }

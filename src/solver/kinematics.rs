@@ -10,6 +10,7 @@ use crate::math::{
 use crate::state::State;
 
 use super::Solver;
+use super::barrier::Nearness;
 use super::fluid_row::Row;
 use super::pair::{Block, WallRow};
 use super::record::Record;
@@ -125,9 +126,13 @@ impl<const D: usize> Solver<D> {
             c: [[0.0; D]; D],
             cv: [0.0; D],
             flat: false,
+            barrier: 0.0,
+            push: [0.0; D],
             lean: [[0.0; D]; D],
         };
-        let is_fluid = self.materials[grains.phase[i] as usize].is_fluid();
+        let material = &self.materials[grains.phase[i] as usize];
+        let is_fluid = material.is_fluid();
+        let mut nearness = Nearness::NONE;
         let mut any = false;
         let mut face = Face::None;
         for &wall in near {
@@ -159,7 +164,12 @@ impl<const D: usize> Solver<D> {
             for k in 0..D {
                 w.s[k] += g[k];
             }
-            w.drive += dot(&vw, &g);
+            let against = sub(vi, &self.point_velocity(wall));
+            self.barrier.add(&mut nearness, (&x, r), weight, &against);
+            if let Some((x, r)) = self.wall_image(xi, wall) {
+                self.barrier.add(&mut nearness, (&x, r), weight, &against);
+            }
+            w.drive += dot(&self.point_velocity(wall), &g);
             for a in 0..D {
                 for b in 0..D {
                     let p = projection.map_or(f64::from(u8::from(a == b)), |n| n[a] * n[b]);
@@ -191,6 +201,10 @@ impl<const D: usize> Solver<D> {
         }
         if !any {
             return None;
+        }
+        w.barrier = self.barrier.push(&nearness, self.sound_speed_of(material));
+        if w.barrier > 0.0 {
+            w.push = nearness.push(w.barrier);
         }
         let wall_gradient = w.gradient(vi, true);
         for a in 0..D {
@@ -262,6 +276,18 @@ impl<const D: usize> Solver<D> {
         }
     }
 
+    /// How a wall point moves [m/s]: a belt's surface slides, its points stay, and what comes near them is compressed
+    /// by its own way only.
+    #[inline(always)]
+    pub(super) fn point_velocity(&self, wall: u32) -> Vector<D> {
+        let group = self.walls.group[wall as usize] as usize;
+        if group >= self.fixed_groups || self.walls.groups[group].moves {
+            self.walls.velocity[wall as usize]
+        } else {
+            [0.0; D]
+        }
+    }
+
     /// x_i - x_wall and its length, nearest image.
     #[inline(always)]
     pub(super) fn wall_offset(&self, xi: &Vector<D>, wall: u32) -> (Vector<D>, f64) {
@@ -270,6 +296,20 @@ impl<const D: usize> Solver<D> {
             .difference(xi, &self.walls.position[wall as usize]);
         let r = norm(&x);
         (x, r)
+    }
+
+    /// x_i - x' and its length, x' the image of a wall point across the axis; `None` where there is no axis. A wall goes on
+    /// there, and its points are not listed twice.
+    #[inline(always)]
+    pub(super) fn wall_image(&self, xi: &Vector<D>, wall: u32) -> Option<(Vector<D>, f64)> {
+        if !self.geometry.is_axisymmetric() {
+            return None;
+        }
+        let xw = &self.walls.position[wall as usize];
+        let mut x = sub(xi, xw);
+        x[0] = xi[0] + xw[0];
+        let r = norm(&x);
+        Some((x, r))
     }
 
     /// Normal to project on at free slip; `None` at no slip.
@@ -290,9 +330,12 @@ impl<const D: usize> Solver<D> {
     pub(super) fn wall_normal(&self, xi: &Vector<D>, wall: u32, state: &State<D>) -> Vector<D> {
         let group = self.walls.group[wall as usize] as usize;
         let gate = group.checked_sub(self.fixed_groups);
-        gate.map_or(self.walls.normal[wall as usize], |g| {
-            self.plates[g].normal_at(xi, state.gates[g].opening)
-        })
+        if let Some(g) = gate {
+            return self.plates[g].normal_at(xi, state.gates[g].opening);
+        }
+        let end = self.walls.end_of(wall as usize);
+        let beside = end.and_then(|e| e.normal_at(&self.periodic.difference(xi, &e.point)));
+        beside.unwrap_or(self.walls.normal[wall as usize])
     }
 }
 

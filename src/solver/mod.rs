@@ -7,6 +7,7 @@
     reason = "textbook index notation: sums over components a, b, c = 0..D and over grains i, as in docs/theory.md"
 )]
 
+mod barrier;
 mod constitutive;
 mod devices;
 mod error;
@@ -56,6 +57,7 @@ use crate::material::Material;
 use crate::math::{Arch, Geometry, Quad, Vector, Workers, norm};
 use crate::state::{Grains, State};
 
+use barrier::Barrier;
 use constitutive::Response;
 use implicit::Viscous;
 use kinematics::Kinematics;
@@ -163,6 +165,7 @@ pub struct Solver<const D: usize> {
     periodic: Periodic<D>,
     materials: Vec<Material>,
     kernel: WendlandC2<D>,
+    barrier: Barrier<D>,
     walls: WallPoints<D>,
     ghost_depth: Vec<f64>,
     /// Number of wall groups before the gates'.
@@ -242,6 +245,10 @@ impl<const D: usize> Solver<D> {
         let spacing = numerics.spacing;
         let h = spacing * numerics.smoothing_ratio;
         let kernel = WendlandC2::new(h);
+        let barrier = Barrier::new(
+            numerics.spacing,
+            numerics.courant * h / numerics.sound_speed,
+        );
         let fixed_groups = walls.groups.len() - plates.len();
         for mover in &movers {
             mover.place(&mut walls, 0.0);
@@ -267,6 +274,7 @@ impl<const D: usize> Solver<D> {
             periodic,
             materials,
             kernel,
+            barrier,
             walls,
             ghost_depth,
             fixed_groups,

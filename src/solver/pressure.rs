@@ -63,7 +63,7 @@ impl<const D: usize> Solver<D> {
                     let o = &mut out[w.row as usize];
                     let eta = self.pair_viscosity[i];
                     for k in 0..D {
-                        o.velocity[k] += a * w.s[k];
+                        o.velocity[k] += a * w.s[k] + dt * w.push[k];
                         w.cv[k] *= eta;
                         for c in 0..D {
                             w.c[k][c] *= eta;

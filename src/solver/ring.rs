@@ -83,8 +83,9 @@ impl<const D: usize> Solver<D> {
         for &w in block.wall_row(row) {
             let w = w as usize;
             let xw = &self.walls.position[w];
-            let mut v = scale(2.0, &sub(&self.walls.velocity[w], vi));
-            v[0] = -2.0 * (self.walls.velocity[w][0] + vi[0]);
+            let vw = self.point_velocity(w as u32);
+            let mut v = scale(2.0, &sub(&vw, vi));
+            v[0] = -2.0 * (vw[0] + vi[0]);
             let weight = 0.5 * self.walls.weight[w] * (1.0 - xw[0] * hoop);
             add(xw, self.lattice_cell() * weight, v);
         }
