@@ -5,6 +5,7 @@
 //! changed scene too and everything derived (sound speed, time scales, lengths of lines) follows. A number at its
 //! start value changes nothing, not even a bit.
 
+use super::Quality;
 use super::lift;
 use super::raw::{
     Angle, At, Coordinates, Entry, Length, Named, Place, Pressure, Ratio, RawGauge, RawMaterial,
@@ -35,6 +36,7 @@ pub struct Adjustable {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Target {
     Resolution,
+    Quality,
     Material(usize, MaterialKey),
     WallFriction(usize),
     /// Section, point of the gauge, axis.
@@ -80,7 +82,7 @@ impl Scene {
     }
 }
 
-/// All numbers of a scene that may be changed: resolution, materials, walls, gauges.
+/// All numbers of a scene that may be changed: resolution, quality, materials, walls, gauges.
 pub(super) fn adjustables(
     raw: &RawScene,
     lower: Point,
@@ -98,6 +100,19 @@ pub(super) fn adjustables(
         range: (0.1, 10.0),
         target: Target::Resolution,
     }];
+    let quality = raw.numerics.as_ref().and_then(|n| n.value.quality.as_ref());
+    if let Some(word) = quality {
+        list.push(Adjustable {
+            name: "solver.quality".to_owned(),
+            description: "how accurate, how fast: 0 draft, 1 standard, 2 fine (the nearest counts)"
+                .to_owned(),
+            unit: "1",
+            display_unit: None,
+            start: Quality::of_word(word.value).number(),
+            range: (0.0, 2.0),
+            target: Target::Quality,
+        });
+    }
     for (i, (name, material)) in sections(raw.materials.as_ref()).enumerate() {
         materials(i, name, material, &mut list);
     }
@@ -265,6 +280,12 @@ fn apply(raw: &mut RawScene, target: Target, value: f64) {
             let numerics = raw.numerics.as_mut().map(|n| &mut n.value);
             if let Some(spacing) = numerics.and_then(|n| n.spacing.as_mut()) {
                 spacing.value.0 /= value;
+            }
+        }
+        Target::Quality => {
+            let numerics = raw.numerics.as_mut().map(|n| &mut n.value);
+            if let Some(word) = numerics.and_then(|n| n.quality.as_mut()) {
+                word.value = Quality::of_number(value).word();
             }
         }
         Target::Material(i, key) => {

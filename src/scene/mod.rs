@@ -10,6 +10,7 @@ mod elements;
 mod error;
 mod ghosts;
 mod lift;
+mod quality;
 mod raw;
 mod reference;
 mod steady_flow;
@@ -18,6 +19,7 @@ mod types;
 pub use adjust::Adjustable;
 pub use build::{build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
+pub use quality::{Picked, Quality};
 pub use reference::{reference_markdown, schema};
 pub use types::*;
 
@@ -95,6 +97,7 @@ fn parse_changed(
         (document, errors) if errors.is_empty() => raw::read_document(document, &mut problems)
             .and_then(|mut scene| {
                 change(&mut scene);
+                quality::apply(&mut scene);
                 lift::lift(&scene, text, &mut problems)
             }),
         (_, errors) => {

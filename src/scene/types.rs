@@ -47,6 +47,8 @@ pub struct Scene {
     pub dimension: Dimension,
     /// Extent, periodic sides, width, gravity.
     pub domain: Domain,
+    /// What resolution and tolerances were taken from, with the numbers in `numerics`.
+    pub quality: super::Quality,
     /// Every numerical choice.
     pub numerics: Numerics,
     /// Materials by name; bodies and inflows refer to them by index.

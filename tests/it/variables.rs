@@ -83,7 +83,7 @@ fn devices_and_gauges_bring_their_variables() {
     let scene = scene::load(&root().join("tests/scenes/devices.toml")).unwrap();
     let table = VariableTable::of(&scene);
     let names: Vec<&str> = table.rows().iter().map(|v| v.name.as_str()).collect();
-    let expected = "time solver.threads saturate_inputs solver.resolution_scale \
+    let expected = "time solver.threads saturate_inputs solver.resolution_scale solver.quality \
         material.beads.static_friction_angle material.beads.dynamic_friction_angle \
         material.beads.inertial_number_scale material.beads.grain_diameter gauge.depth.foot_x gauge.depth.foot_y \
         gauge.surface.from_x gauge.surface.from_y gauge.surface.to_x gauge.surface.to_y gauge.past_gate.from_x \

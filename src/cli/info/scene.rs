@@ -21,6 +21,7 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
         component.ledger().initial,
         component.wall_points().len(),
     ));
+    text.push_str(&format!("quality    {}\n", quality(scene)));
     for body in &scene.bodies {
         let inside = |p: &&[f32; 3]| contains(&body.shape, p.map(f64::from));
         text.push_str(&format!(
@@ -39,6 +40,17 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
     }
     text.push_str(&format!("left out   {}\n", left_out(scene).join("; ")));
     text
+}
+
+/// What resolution and tolerances the scene's quality picked.
+fn quality(scene: &Scene) -> String {
+    let (n, resolution) = (&scene.numerics, scene.quality.picked().resolution);
+    format!(
+        "{}: {resolution} times the resolution that the scene gives, courant {}, solver_tolerance {} (docs/precision.md)",
+        scene.quality.name(),
+        n.courant,
+        n.solver_tolerance,
+    )
 }
 
 /// The law of a material and what is added to it.

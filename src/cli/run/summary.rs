@@ -41,6 +41,8 @@ pub(super) fn json(
         "scene": scene.name,
         "title": scene.title,
         "scene_sha256": hex(&scene.fingerprint()),
+        "quality": scene.quality.name(),
+        "spacing": number(scene.numerics.spacing),
         "time": number(component.time()),
         "until": number(session.plan.until),
         "communication_step": number(session.plan.step),

@@ -21,6 +21,7 @@ mod run;
 mod scheme;
 mod walls;
 
+use super::Quality;
 use super::raw::{
     At, Coordinates, DimensionWord, Entry, Named, Place, Problems, RawScene, nearest,
 };
@@ -43,6 +44,8 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     lift.check_bodies_against_devices();
     lift.check_something_flows();
     let numerics = lift.numerics(&materials);
+    let quality = raw.numerics.as_ref().and_then(|n| n.value.quality.as_ref());
+    let quality = quality.map(|word| Quality::of_word(word.value));
     let run = lift.run();
     let schedules = lift.schedules(&inflows);
     let log = lift.log(run);
@@ -55,6 +58,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
         source: source.to_owned(),
         dimension,
         domain,
+        quality: quality?,
         numerics: numerics?,
         materials: materials.into_iter().collect::<Option<_>>()?,
         bodies,

@@ -73,6 +73,8 @@ table! {
     RawNumerics {
         /// Particle spacing dp: the resolution. Bodies are filled on a lattice of this spacing, the first row half a spacing inside.
         required spacing: Length, in Range::above(0.0);
+        /// Resolution and tolerances taken together, as the studies in docs/precision.md found them: spacing is that of "standard". What the file gives itself stays.
+        optional quality: QualityWord, default "standard";
         /// Smoothing length over particle spacing.
         optional smoothing_ratio: Ratio, in Range::within(1.2, 2.5), default 1.6;
         /// Artificial sound speed c0; if left out, 10 max(sqrt(g H), expected_speed), H the greatest height of material.
@@ -123,6 +125,18 @@ table! {
         optional jitter: Ratio, in Range::within(0.0, 0.4), default 0.1;
         /// Seed of that displacement.
         optional seed: Whole, default 1;
+    }
+}
+
+choice! {
+    /// How accurate, how fast.
+    QualityWord {
+        /// for a first look: twice the spacing, courant 0.7, solver_tolerance 1e-2; about a tenth of the CPU time in the plane
+        "draft" => Draft,
+        /// the spacing given, defaults
+        "standard" => Standard,
+        /// for numbers that count: two thirds of the spacing; about three to four times the CPU time in the plane
+        "fine" => Fine,
     }
 }
 
