@@ -5,6 +5,8 @@
 //!
 //! [`precision`] asks what accuracy costs: error against CPU time, and docs/precision.md.
 //!
+//! [`units`] times each part of a step and of what surrounds it, so that two commits can be compared.
+//!
 //! It prints nothing: `cli` shows progress. Times are CPU times wherever they can be, medians of repetitions, and what is
 //! compared is timed in turns, so that others on the machine disturb both alike.
 
@@ -16,6 +18,7 @@ pub mod precision;
 pub mod roofline;
 pub mod scenes;
 pub mod speed;
+pub mod units;
 
 pub use machine::Machine;
 pub use speed::{Choices, SpeedRun};

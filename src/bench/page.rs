@@ -1,6 +1,7 @@
 //! docs/performance.md from a stored run: what was asked, what came out, what binds.
 
 mod binds;
+mod peers;
 mod runs;
 mod sweeps;
 
@@ -183,6 +184,7 @@ pub fn text(run: &SpeedRun) -> String {
         binds::budget(run),
         runs::sizes(run),
         runs::threads(run),
+        peers::peers(run),
         how(run),
     ];
     parts.join("\n\n") + "\n"

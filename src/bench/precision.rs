@@ -42,7 +42,7 @@ impl Setting {
 }
 
 /// Choices tried beside the defaults at one resolution.
-const CHANGES: [(&str, &str); 13] = [
+const CHANGES: [(&str, &str); 15] = [
     ("smoothing_ratio", "1.3"),
     ("smoothing_ratio", "2.0"),
     ("courant", "0.25"),
@@ -56,6 +56,8 @@ const CHANGES: [(&str, &str); 13] = [
     ("density_diffusion", "0.0"),
     ("density_diffusion", "0.3"),
     ("sleep", "false"),
+    ("quality", "\"draft\""),
+    ("quality", "\"fine\""),
 ];
 
 /// What one setting came to.

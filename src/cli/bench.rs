@@ -25,6 +25,33 @@ enum What {
     Speed(Speed),
     /// Error against CPU time over resolutions and numerical choices, with the Pareto front
     Precision(Precision),
+    /// Each part by itself: search, sweeps, equation of state, solve, gauges, save, restore, step, log, publish
+    Units(Units),
+    /// Two kept runs of `bench units`, of two commits: each part's time and the ratio
+    Compare(Compare),
+}
+
+/// What may be typed after `sandgate bench units`.
+#[derive(Debug, clap::Args)]
+struct Units {
+    /// Small sizes that take seconds
+    #[arg(long)]
+    quick: bool,
+    /// Name of the run, the file NAME.json; name it after the commit to compare it with another
+    #[arg(long, value_name = "NAME", default_value = "units", value_parser = file_name)]
+    name: String,
+    /// Folder in which runs are kept
+    #[arg(long, value_name = "DIR", default_value = "benches/runs")]
+    out: PathBuf,
+}
+
+/// What may be typed after `sandgate bench compare`.
+#[derive(Debug, clap::Args)]
+struct Compare {
+    /// The run to compare with, a file of `bench units`
+    first: PathBuf,
+    /// The other
+    second: PathBuf,
 }
 
 /// What may be typed after `sandgate bench precision`.
@@ -109,7 +136,29 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     match &args.what {
         What::Speed(args) => speed(args),
         What::Precision(args) => precision(args),
+        What::Units(args) => units(args),
+        What::Compare(args) => {
+            let first = bench::stored(&args.first)?;
+            let second = bench::stored(&args.second)?;
+            say(bench::units::table(&first, Some(&second)).trim_end())
+        }
     }
+}
+
+fn units(args: &Units) -> Result<(), CliError> {
+    let mut display = Display::new();
+    let run = bench::units::run(args.quick, &args.out, &mut |share, what| {
+        display.show(&Progress {
+            share,
+            what: what.to_owned(),
+        });
+    });
+    display.bar.finish_and_clear();
+    let run = run?;
+    let kept = args.out.join(format!("{}.json", args.name));
+    bench::store(&kept, &run)?;
+    let table = bench::units::table(&run, None);
+    say(&format!("{table}run in {}", kept.display()))
 }
 
 fn speed(args: &Speed) -> Result<(), CliError> {

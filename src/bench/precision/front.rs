@@ -124,7 +124,7 @@ mod tests {
             machine: Machine::here(),
             measured: Vec::new(),
         };
-        for (resolution, value) in [(0.5, 0.8), (1.0, 0.95), (1.4, 1.0)] {
+        for (resolution, value) in [(0.5, 0.8), (1.4, 0.95), (2.0, 1.0)] {
             run.measured.push(measured(
                 "column", "defaults", resolution, value, resolution,
             ));

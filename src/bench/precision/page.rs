@@ -1,8 +1,9 @@
 //! docs/precision.md and its figures from a stored run.
 
-use super::PrecisionRun;
 use super::front::{Standing, standings};
 use super::studies::{Reference, STUDIES, Study};
+use super::{Measured, PrecisionRun};
+use crate::scene::Quality;
 use crate::validate::chart::{Chart, Curve, Look};
 use crate::validate::report::number;
 
@@ -35,6 +36,7 @@ pub fn text(run: &PrecisionRun) -> String {
     );
     text.push_str("\n\n");
     text.push_str(&summary(run));
+    text.push_str(&qualities(run));
     for study in &STUDIES {
         let (all, uncertain) = standings(study, run);
         if !all.is_empty() {
@@ -69,6 +71,53 @@ fn summary(run: &PrecisionRun) -> String {
     text
 }
 
+/// What each quality comes to in each study.
+fn qualities(run: &PrecisionRun) -> String {
+    let mut text = "\n## What the quality knob picks\n\n`quality = \"draft\" | \"standard\" | \"fine\"` in `[numerics]`, or the parameter \
+         `solver.quality` (0, 1, 2) of a component, sets together what a scene leaves open:\n\n| quality | resolution | courant | solver_tolerance |\n|---|---|---|---|\n"
+        .to_owned();
+    for quality in Quality::ALL {
+        let picked = quality.picked();
+        let cell = |v: Option<f64>| v.map_or("default".to_owned(), number);
+        text.push_str(&format!(
+            "| {} | x{} | {} | {} |\n",
+            quality.name(),
+            picked.resolution,
+            cell(picked.courant),
+            cell(picked.solver_tolerance)
+        ));
+    }
+    text.push_str("\nand comes to, error and CPU time, at the resolution of each study:\n\n| study | draft | standard | fine |\n|---|---|---|---|\n");
+    for study in &STUDIES {
+        let (all, _) = standings(study, run);
+        let cell = |quality: Quality| {
+            let name = match quality {
+                Quality::Standard => "defaults".to_owned(),
+                _ => format!("quality = {}", quality.name()),
+            };
+            let found = all
+                .iter()
+                .find(|s| s.measured.setting == name && s.measured.resolution == 1.0);
+            found.map_or("-".to_owned(), |s| {
+                let error = s.error.map_or("no result".to_owned(), percent);
+                format!("{error}, {} s", number(s.measured.cpu))
+            })
+        };
+        if !all.is_empty() {
+            let cells = Quality::ALL.map(cell).join(" | ");
+            text.push_str(&format!("| {} | {cells} |\n", study.name));
+        }
+    }
+    text
+}
+
+/// Spacing of a setting [m]: a quality may change it.
+fn spacing(study: &Study, m: &Measured) -> f64 {
+    let quality = m.setting.strip_prefix("quality = ");
+    let known = Quality::ALL.iter().find(|q| Some(q.name()) == quality);
+    study.spacing(m.resolution) / known.map_or(1.0, |q| q.picked().resolution)
+}
+
 fn percent(share: f64) -> String {
     format!("{} %", number(100.0 * share))
 }
@@ -101,7 +150,7 @@ fn section(study: &Study, all: &[Standing], uncertain: Option<f64>) -> String {
         text.push_str(&format!(
             "| {} | {} | {} | {} | {} | {} | {} | {} |\n",
             m.setting,
-            number(1e3 * study.spacing(m.resolution)),
+            number(1e3 * spacing(study, m)),
             m.particles,
             m.steps,
             m.value.map_or("failed".to_owned(), number),

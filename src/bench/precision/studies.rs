@@ -10,6 +10,9 @@ const COLUMN: &str = include_str!("../../../cases/column_collapse.toml");
 const ROUND: &str = include_str!("../../../cases/column_collapse_axisymmetric.toml");
 const INCLINE: &str = include_str!("../../../cases/validation/incline.toml");
 const HYDROSTATIC: &str = include_str!("../../../cases/hydrostatic.toml");
+const SILO: &str = include_str!("../../../cases/validation/silo.toml");
+const CHANNEL: &str = include_str!("../../../cases/validation/channel.toml");
+const DAM: &str = include_str!("../../../cases/validation/dam_break.toml");
 
 /// What a value is held against.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,10 +54,16 @@ enum Measure {
     Bagnold,
     /// Root mean square of pressure against rho g (H - y) over rho g H at the end.
     Hydrostatic,
+    /// C of Q = C sqrt(g) D^1.5, mean over the second half.
+    Silo,
+    /// Root mean square of velocity against the exact profile over that of the profile, mean over the last half.
+    Channel,
+    /// Root mean square of depth against Ritter's over the reservoir's, where that is 10 to 80 % of it, at the end.
+    DamBreak,
 }
 
 /// All studies.
-pub const STUDIES: [Study; 5] = [
+pub const STUDIES: [Study; 8] = [
     Study {
         name: "bagnold",
         about: "steady flow down a slope of 25 deg, 5 mm grains, 0.1 m deep, started from the exact profile, 1.5 s: root mean square of velocity against Bagnold's profile over the surface's velocity, mean of the second half",
@@ -104,7 +113,7 @@ pub const STUDIES: [Study; 5] = [
             1.116,
         )),
         reference: Reference::Finest,
-        resolutions: &[0.35, 0.5, 0.7, 1.0, 1.4],
+        resolutions: &[0.35, 0.5, 0.7, 1.0, 1.4, 2.0],
         cost: 2.5,
         make: |t, _| t.with("run.until", 0.6).without("gauges.surface"),
         template: COLUMN,
@@ -122,7 +131,7 @@ pub const STUDIES: [Study; 5] = [
             3.73,
         )),
         reference: Reference::Finest,
-        resolutions: &[0.35, 0.5, 0.7, 1.0, 1.4],
+        resolutions: &[0.35, 0.5, 0.7, 1.0, 1.4, 2.0],
         cost: 5.0,
         make: |t, _| {
             t.with("run.until", 1.0)
@@ -150,7 +159,7 @@ pub const STUDIES: [Study; 5] = [
         about: "collapse of a round column, a = 0.90, axisymmetric, to 0.6 s: run-out over radius, against the finest resolution",
         published: Some(("experiments of Lube et al. (2004)", 1.116)),
         reference: Reference::Finest,
-        resolutions: &[0.5, 0.7, 1.0, 1.4],
+        resolutions: &[0.5, 0.7, 1.0, 1.4, 2.0],
         cost: 3.0,
         make: |t, _| t.with("run.until", 0.6).without("gauges.surface"),
         template: ROUND,
@@ -159,6 +168,66 @@ pub const STUDIES: [Study; 5] = [
             gauge: "front",
             radius: 97.2e-3,
         },
+    },
+    Study {
+        name: "silo",
+        about: "discharge of glass beads from a planar silo, outlet D = 50 mm (10 spacings), 0.4 s: C of Q = C sqrt(g) D^1.5, mean of the second half, against the finest resolution",
+        published: Some((
+            "1.45 +- 0.12, mu(I) of the Basilisk wiki's silo, another material",
+            1.45,
+        )),
+        reference: Reference::Finest,
+        resolutions: &[0.5, 0.7, 1.0, 1.4, 2.0],
+        cost: 3.0,
+        make: |t, _| t,
+        template: SILO,
+        spacing: 5e-3,
+        measure: Measure::Silo,
+    },
+    Study {
+        name: "channel",
+        about: "clay (Herschel and Bulkley) between two plates 40 mm apart (10 spacings to the middle), 2500 Pa/m, from rest to 1.6 s: root mean square of velocity against the exact profile over that of the profile, mean of the second half",
+        published: None,
+        reference: Reference::Error,
+        resolutions: &[0.5, 0.7, 1.0, 1.4],
+        cost: 4.0,
+        // Sixteen particles along it at each resolution, eight in a draft: a period must hold the kernel.
+        make: |t, spacing| {
+            let length = 16.0 * spacing;
+            let clay = toml::Table::from_iter([
+                ("law".to_owned(), "fluid".into()),
+                ("preset".to_owned(), "clay".into()),
+            ]);
+            t.with("domain.lower", point(0.0, -6.0 * spacing))
+                .with("domain.upper", point(length, 0.04 + 6.0 * spacing))
+                .with("domain.gravity", point(2500.0 / 1540.0, -0.3))
+                .with("materials.fluid", clay)
+                .with("bodies.fluid.box", rectangle([0.0, 0.0], [length, 0.04]))
+                .with(
+                    "walls.low.polyline",
+                    crate::validate::template::points(&[[0.0, 0.0], [length, 0.0]]),
+                )
+                .with(
+                    "walls.high.polyline",
+                    crate::validate::template::points(&[[length, 0.04], [0.0, 0.04]]),
+                )
+                .with("run.until", 1.6)
+        },
+        template: CHANNEL,
+        spacing: 2e-3,
+        measure: Measure::Channel,
+    },
+    Study {
+        name: "dam_break",
+        about: "clear water 0.30 m deep (15 spacings) let go over a dry bed, to 1.05 s = 6 sqrt(H/g): root mean square of depth against Ritter's solution of the shallow-water equations over H, where it is 10 to 80 % of H",
+        published: None,
+        reference: Reference::Error,
+        resolutions: &[0.6, 1.0, 1.4, 2.0],
+        cost: 3.0,
+        make: |t, _| t.without("bodies.downstream"),
+        template: DAM,
+        spacing: 0.02,
+        measure: Measure::DamBreak,
     },
 ];
 
@@ -198,14 +267,30 @@ impl Study {
         self.spacing / resolution
     }
 
-    /// A watcher that is shown every communication point and gives the mean of what it saw in the second half.
+    /// A watcher that is shown every communication point and gives what it makes of the second half: a mean or a rate.
     pub(super) fn begin(&self, component: &Component) -> impl FnMut(&Component) -> f64 + use<> {
         let (measure, until) = (self.measure, component.scene().run.until);
         let (mut sum, mut count, mut last) = (0.0, 0.0, -1.0);
+        let mut first = None;
         move |component: &Component| {
             let time = component.time();
-            if measure == Measure::Bagnold && time > 0.5 * until && time > last {
-                sum += bagnold(component);
+            if time <= 0.5 * until {
+                return f64::NAN;
+            }
+            let error = match measure {
+                Measure::Bagnold => bagnold(component),
+                Measure::Channel => channel(component),
+                Measure::Silo => {
+                    let gone = output(component, "gauge.discharge.mass");
+                    let (t0, m0) = *first.get_or_insert((time, gone));
+                    return (gone - m0) / (time - t0);
+                }
+                Measure::RunOut { .. } | Measure::Hydrostatic | Measure::DamBreak => {
+                    return f64::NAN;
+                }
+            };
+            if time > last {
+                sum += error;
                 count += 1.0;
                 last = time;
             }
@@ -216,15 +301,16 @@ impl Study {
     /// The value at the end; `mean` is what the watcher gave.
     pub(super) fn value(&self, component: &Component, mean: f64) -> f64 {
         match self.measure {
-            Measure::Bagnold => mean,
+            Measure::Bagnold | Measure::Channel => mean,
+            Measure::Silo => {
+                let bulk = component.scene().materials[0].material.rest_density();
+                mean / (bulk * 9.81f64.sqrt() * OUTLET.powf(1.5))
+            }
             Measure::Hydrostatic => hydrostatic(component),
+            Measure::DamBreak => dam_break(component),
             Measure::RunOut { gauge, radius } => {
-                let name = format!("gauge.{gauge}.front");
-                let row = component.variables().by_name(&name);
-                let mut front = [f64::NAN];
-                // A gauge that is not there gives no value.
-                row.map(|row| component.get(&[row.reference], &mut front));
-                (front[0] - radius) / radius
+                let front = output(component, &format!("gauge.{gauge}.front"));
+                (front - radius) / radius
             }
         }
     }
@@ -260,6 +346,64 @@ fn hydrostatic(component: &Component) -> f64 {
     (squares.sum::<f64>() / view.position.len() as f64).sqrt() / (weight * top)
 }
 
+/// Outlet of the silo [m].
+const OUTLET: f64 = 0.05;
+
+/// A scalar output; no number if it is not there.
+fn output(component: &Component, name: &str) -> f64 {
+    let row = component.variables().by_name(name);
+    let mut value = [f64::NAN];
+    row.map(|row| component.get(&[row.reference], &mut value));
+    value[0]
+}
+
+/// Exact velocity of the clay at a distance from the middle of its channel [m/s].
+fn clay(y: f64) -> f64 {
+    let (half, force, consistency, n, yield_stress) =
+        (0.02f64, 2500.0f64, 4.472f64, 0.472f64, 30.0f64);
+    let plug = yield_stress / force;
+    let power = 1.0 + 1.0 / n;
+    let fastest = n / (n + 1.0) * (force / consistency).powf(1.0 / n) * (half - plug).powf(power);
+    let s: f64 = ((y.abs() - plug) / (half - plug)).max(0.0);
+    fastest * (1.0 - s.powf(power))
+}
+
+fn channel(component: &Component) -> f64 {
+    let view = component.particles();
+    let (mut miss, mut size) = (0.0, 0.0);
+    for (x, v) in view.position.iter().zip(&view.velocity) {
+        let exact = clay(f64::from(x[1]) - 0.02);
+        miss += (f64::from(v[0]) - exact).powi(2);
+        size += exact * exact;
+    }
+    (miss / size).sqrt()
+}
+
+fn dam_break(component: &Component) -> f64 {
+    let scene = component.scene();
+    let (depth, time) = (0.3, component.time());
+    let c = (9.81f64 * depth).sqrt();
+    let Some(row) = component.variables().by_name("gauge.surface.depth") else {
+        return f64::NAN;
+    };
+    let mut found = vec![f64::NAN; row.len()];
+    if component.get(&[row.reference], &mut found).is_err() {
+        return f64::NAN;
+    }
+    // The feet of the template's gauge: every 20 mm from -1.9 m on.
+    let errors: Vec<f64> = found
+        .iter()
+        .enumerate()
+        .filter_map(|(k, h)| {
+            let x = scene.domain.lower[0] + 0.2 + 0.02 * k as f64;
+            let exact = (2.0 * c - x / time).powi(2) / (9.0 * 9.81);
+            let inside = x > -c * time && x < 2.0 * c * time;
+            (inside && (0.1 * depth..0.8 * depth).contains(&exact)).then(|| (h - exact) / depth)
+        })
+        .collect();
+    (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -273,7 +417,8 @@ mod tests {
                 let text = study.scene(&setting).unwrap();
                 let scene = scene::parse(study.name, &text)
                     .unwrap_or_else(|e| panic!("{} {}: {e}", study.name, setting.name()));
-                assert!((scene.numerics.spacing - study.spacing(setting.resolution)).abs() < 1e-12);
+                let spacing = study.spacing(setting.resolution) / scene.quality.picked().resolution;
+                assert!((scene.numerics.spacing - spacing).abs() < 1e-12);
                 if let Measure::RunOut { gauge, .. } = study.measure {
                     assert!(scene.gauges.iter().any(|g| g.name == gauge));
                 }
