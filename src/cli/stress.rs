@@ -280,7 +280,7 @@ fn campaign(args: &Args) -> Result<(), CliError> {
 /// Makes a failed case smaller and writes it.
 fn keep(args: &Args, campaign: &Campaign, tried: &Tried) -> Result<(), CliError> {
     let path = args.out.join(format!("{}-{}.toml", tried.kind, tried.seed));
-    let Some(case) = campaign.case(tried.seed) else {
+    let Ok(case) = campaign.case(tried.seed) else {
         return Ok(());
     };
     let small = if args.shrink > 0 {

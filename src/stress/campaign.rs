@@ -39,8 +39,10 @@ pub struct Tried {
 
 impl Campaign {
     /// The case of a seed.
-    #[must_use]
-    pub fn case(&self, seed: u64) -> Option<Case> {
+    ///
+    /// # Errors
+    /// As [`generate::of_kind`].
+    pub fn case(&self, seed: u64) -> Result<Case, String> {
         let kind = self.kind.as_deref();
         generate::of_kind(kind.unwrap_or(generate::kind_of(seed).name), seed)
     }
@@ -51,12 +53,11 @@ impl Campaign {
         let kind = self.kind.as_deref();
         let kind = kind.unwrap_or(generate::kind_of(seed).name);
         let (failures, figures) = match self.case(seed) {
-            Some(case) => {
+            Ok(case) => {
                 let outcome = run(&case, &self.bounds);
                 (outcome.failures, outcome.figures)
             }
-            None => {
-                let what = "no legal scene was found in 20 drafts".to_owned();
+            Err(what) => {
                 let check = Check::Expectation;
                 (vec![Failure { check, what }], Figures::default())
             }

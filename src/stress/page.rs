@@ -114,6 +114,7 @@ pub fn text(stored: &Stored) -> String {
         cases(stored),
         map(&stored.limits),
         broken(&stored.broken),
+        faults(),
         missing(),
     ];
     parts.join("\n\n") + "\n"
@@ -419,10 +420,39 @@ fn broken(builds: &[Broken]) -> String {
     text
 }
 
+/// The tests are `tests/it/faults.rs`.
+fn faults() -> String {
+    let rows = [
+        (
+            "a stop in mid-step, the state saved there and gone on with on another number of threads",
+            "the same state, bit for bit, and mass to 0; every campaign scene that is cut after so many internal steps does so too",
+        ),
+        (
+            "more particles than memory",
+            "refused before any memory is asked for: key, line, how many particles, at most 5e7 (and 1e9 cells), use a coarser spacing",
+        ),
+        (
+            "a disk that is full while the log is written",
+            "the run stops with the log's name, what was kept, and how to go on without a log; exit code 5",
+        ),
+        (
+            "fewer cores than threads asked for (64 on 2)",
+            "the same bits; a machine that starts none computes in the calling thread",
+        ),
+    ];
+    let rows: Vec<Vec<String>> = rows
+        .iter()
+        .map(|(what, then)| vec![(*what).to_owned(), (*then).to_owned()])
+        .collect();
+    format!(
+        "## Faults from outside\n\nPart of the test command (`cargo test --test it faults`).\n\n{}",
+        table(&["fault", "what happens"], &rows)
+    )
+}
+
 fn missing() -> String {
     "## What is not tried\n\nS22 (convergence over three resolutions) needs more than 500 particles: it is part of `sandgate validate`. \
      S23 (gravity flips) and S24 (a floor that vibrates) need gravity and walls whose motion changes with time; there are \
-     none. Sweeps use one thread below 2,500 particles, so that only kind `threads` compares numbers of threads. Out of memory \
-     and a full disk are not part of this harness; full disks are tested with the logs."
+     none. Sweeps use one thread below 2,500 particles, so that only kind `threads` compares numbers of threads."
         .to_owned()
 }

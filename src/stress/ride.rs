@@ -8,6 +8,9 @@ use crate::scene::{InputTarget, Scene, Schedule};
 
 use super::Case;
 
+/// Most pieces of a communication step.
+const MOST_PIECES: f64 = 5000.0;
+
 /// One communication step that was done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Done {
@@ -37,6 +40,9 @@ pub(super) struct Ride<'a> {
     most_cpu: f64,
     /// Estimate of an internal step [s].
     internal_step: f64,
+    /// Each communication step is done in so many; inputs change at the first of them only.
+    pieces: usize,
+    told: Vec<f64>,
 }
 
 impl<'a> Ride<'a> {
@@ -68,7 +74,18 @@ impl<'a> Ride<'a> {
             cpu: 0.0,
             most_cpu,
             internal_step: n.courant * n.smoothing_ratio * n.spacing / n.sound_speed,
+            pieces: 1,
+            told: Vec::new(),
         })
+    }
+
+    /// Each communication step in pieces of about an internal step, told the same at the same times: what gates do to
+    /// the material is then known force by force, and not by the mean over a step in which a plate moved for a moment.
+    pub(super) fn in_pieces(mut self) -> Self {
+        let longest = self.case.drive.steps.iter().copied().fold(0.0, f64::max);
+        let pieces = (longest / self.internal_step).ceil();
+        self.pieces = pieces.clamp(1.0, MOST_PIECES) as usize;
+        self
     }
 
     /// Whether the CPU time ran out.
@@ -79,8 +96,12 @@ impl<'a> Ride<'a> {
     /// What each input will be told at the next communication point.
     pub(super) fn wanted(&self) -> Vec<(InputTarget, f64)> {
         let time = self.component.time();
-        let told = |(_, s): &(ValueReference, &Schedule)| (s.input, s.value_at(time));
-        self.inputs.iter().map(told).collect()
+        let fresh = self.index.is_multiple_of(self.pieces);
+        let told = |(n, (_, s)): (usize, &(ValueReference, &Schedule))| {
+            let held = self.told.get(n).copied().filter(|_| !fresh);
+            (s.input, held.unwrap_or_else(|| s.value_at(time)))
+        };
+        self.inputs.iter().enumerate().map(told).collect()
     }
 
     /// The next communication step; `None` at the end.
@@ -88,11 +109,11 @@ impl<'a> Ride<'a> {
     /// # Errors
     /// The component's.
     pub(super) fn next(&mut self) -> Option<Result<Done, Error>> {
-        if self.over || self.index >= self.case.drive.count {
+        if self.over || self.index >= self.case.drive.count * self.pieces {
             return None;
         }
         let steps = &self.case.drive.steps;
-        let asked = steps[self.index % steps.len()];
+        let asked = steps[self.index / self.pieces % steps.len()] / self.pieces as f64;
         let left = self.case.drive.most_steps.saturating_sub(self.internal);
         // Watched only where it may have to be cut: plain steps are what most users do.
         let watched = asked > self.internal_step * left as f64 / 3.0;
@@ -109,9 +130,12 @@ impl<'a> Ride<'a> {
 
     fn step(&mut self, asked: f64, watch: Option<u64>) -> Result<Done, Error> {
         let time = self.component.time();
-        for (reference, schedule) in &self.inputs {
-            self.component
-                .set(&[*reference], &[schedule.value_at(time)])?;
+        if self.index.is_multiple_of(self.pieces) {
+            let inputs = self.inputs.iter();
+            self.told = inputs.map(|(_, s)| s.value_at(time)).collect();
+        }
+        for ((reference, _), value) in self.inputs.iter().zip(&self.told) {
+            self.component.set(&[*reference], &[*value])?;
         }
         let clock = ThreadTime::try_now().ok();
         let spent = || clock.and_then(|c| c.try_elapsed().ok());

@@ -18,6 +18,7 @@ mod contract;
 mod cross;
 #[cfg(feature = "cli")]
 mod drivers;
+mod faults;
 mod fmi_page;
 #[cfg(feature = "cli")]
 mod fmu;

@@ -63,7 +63,7 @@ pub(super) fn sluice(dice: &mut Dice) -> Draft {
     let n = dice.whole(4, 7) as f64;
     let side = short(n * dp);
     // Wide enough that a particle does not see itself around the periodic side.
-    let across = short(8.0 * dp);
+    let across = 8.0 * dp;
     let scale = Scale {
         spacing: dp,
         height: 2.0 * side,
