@@ -10,8 +10,8 @@ at, a member that fails is tried again from its last state, and the script goes 
 The states are exact: results have the same bits on one worker, on many, and after any number of restarts (`--serial`
 computes them here without slices, to compare).
 
-Workers need fmpy and nothing else: the FMUs (one for each fill level, which belongs to the scene; the friction angle is a
-parameter, the schedule an input) are sent to them. Writes OUT/results.parquet (a row a member and step) and OUT/outflow.svg.
+Workers need fmpy and nothing else: the FMU is sent to them. One serves all members: friction angle and fill level are its
+parameters, the gate's opening is its input. Writes OUT/results.parquet (a row a member and step) and OUT/outflow.svg.
 """
 
 import argparse
@@ -21,7 +21,6 @@ import json
 import math
 import os
 import shutil
-import string
 import subprocess
 import sys
 import tempfile
@@ -37,7 +36,7 @@ STEPS = 24
 SLICE = 6
 TRIES = 3
 FRICTION = [20.0, 24.0, 28.0, 32.0]  # [deg]
-FILL = ["5 cm", "8 cm"]
+FILL = [0.05, 0.08]  # [m]
 # Opening of the gate over time: (time [s], opening), straight in between.
 SCHEDULES = {
     "wide": [(0.0, 1.0)],
@@ -49,16 +48,12 @@ OUTPUTS = ["gauge.level.depth", "outflow.drain.mass", "outflow.drain.rate", "mas
 
 
 def members():
-    """Every member: its number, what is swept, and the FMU that it takes."""
+    """Every member: its number and what is swept."""
     sweep = itertools.product(FRICTION, FILL, SCHEDULES)
     return [
-        dict(member=number, friction=friction, fill=fill, schedule=schedule, fmu=archive(fill))
+        dict(member=number, friction=friction, fill=fill, schedule=schedule)
         for number, (friction, fill, schedule) in enumerate(sweep)
     ]
-
-
-def archive(fill):
-    return f"silo_{fill}.fmu".replace(" ", "")
 
 
 def opening(schedule, t):
@@ -71,30 +66,22 @@ def opening(schedule, t):
 
 
 def pack(sandgate, library, folder):
-    """The FMUs of the sweep, by file name. Packing is skipped for those that are there."""
+    """The FMU, as bytes. Packing is skipped if it is there."""
     folder.mkdir(parents=True, exist_ok=True)
-    template = string.Template(Path(__file__).with_name("silo.toml.in").read_text())
-    files = {}
-    for fill in FILL:
-        path = folder / archive(fill)
-        if not path.exists():
-            scene = path.with_suffix(".toml")
-            scene.write_text(template.substitute(fill=fill))
-            extra = ["--library", library] if library else []
-            command = [sandgate, "fmu", scene, "--fmi", "3", "--reference", "0", "-o", path, *extra]
-            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-        files[path.name] = path.read_bytes()
-    return files
+    path = folder / "silo.fmu"
+    if not path.exists():
+        scene = Path(__file__).with_name("silo.toml")
+        extra = ["--library", library] if library else []
+        command = [sandgate, "fmu", scene, "--fmi", "3", "--reference", "0", "-o", path, *extra]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    return path.read_bytes()
 
 
-def unpack(files, folder):
-    """FMUs made ready in a folder: name -> (description, folder of the archive)."""
-    ready = {}
-    for name, data in files.items():
-        path = Path(folder) / name
-        path.write_bytes(data)
-        ready[name] = (fmpy.read_model_description(str(path)), fmpy.extract(str(path), str(path.with_suffix(""))))
-    return ready
+def unpack(archive, folder):
+    """The FMU made ready in a folder: its description, and the folder that it was extracted to."""
+    path = Path(folder) / "silo.fmu"
+    path.write_bytes(archive)
+    return fmpy.read_model_description(str(path)), fmpy.extract(str(path), str(path.with_suffix("")))
 
 
 def advance(ready, member, first, last, state):
@@ -102,7 +89,7 @@ def advance(ready, member, first, last, state):
 
     `state` is None for a member that has not begun.
     """
-    description, folder = ready[member["fmu"]]
+    description, folder = ready
     fmu = FMU3Slave(
         guid=description.instantiationToken,
         unzipDirectory=folder,
@@ -115,8 +102,8 @@ def advance(ready, member, first, last, state):
         references = {v.name: v.valueReference for v in description.modelVariables}
         if state is None:
             fmu.enterInitializationMode(startTime=0.0)
-            angle = math.radians(member["friction"])
-            fmu.setFloat64([references["material.grains.friction_angle"]], [angle])
+            swept = {"material.grains.friction_angle": math.radians(member["friction"]), "body.fill.upper_y": member["fill"]}
+            fmu.setFloat64([references[name] for name in swept], list(swept.values()))
             fmu.exitInitializationMode()
         else:
             # A state goes into an instance that was only instantiated, in any process; it holds the parameters too.
@@ -163,32 +150,32 @@ class Store:
         os.replace(part, path)
 
 
-def serial(files):
+def serial(archive):
     """All members here, one after the other, each in one go: no slices and no states."""
     with tempfile.TemporaryDirectory() as folder:
-        ready = unpack(files, folder)
+        ready = unpack(archive, folder)
         return {m["member"]: advance(ready, m, 0, STEPS, None)[0] for m in members()}
 
 
-def ensemble(client, files, store, on_slice=lambda done: None):
+def ensemble(client, archive, store, on_slice=lambda done: None):
     """All members on the workers of a Dask client; rows by member. Members that failed TRIES times are left out.
 
     `on_slice` is told how many slices have come back.
     """
     from dask.distributed import WorkerPlugin, as_completed, get_worker
 
-    class Archives(WorkerPlugin):
-        """Puts the FMUs on every worker, also on one that joins or is started again."""
+    class Archive(WorkerPlugin):
+        """Puts the FMU on every worker, also on one that joins or is started again."""
 
         def setup(self, worker):
-            worker.fmus = unpack(files, tempfile.mkdtemp(dir=worker.local_directory))
+            worker.fmu = unpack(archive, tempfile.mkdtemp(dir=worker.local_directory))
 
     def slice_of(member, first, last, state):
         worker = get_worker()
         worker.log_event("slices", dict(member=member["member"], first=first))
-        return advance(worker.fmus, member, first, last, state)
+        return advance(worker.fmu, member, first, last, state)
 
-    client.register_plugin(Archives(), name="fmus")
+    client.register_plugin(Archive(), name="fmu")
     found, states, tries, running = {}, {}, {}, {}
     queue = as_completed(with_results=True, raise_errors=False)
 
@@ -250,7 +237,7 @@ def write_svg(results, path):
     for panel, fill in enumerate(FILL):
         left = 50 + panel * (width + 30)
         svg.append(f'<path d="M{left} 30v{height}h{width}" fill="none" stroke="#333"/>')
-        svg.append(f'<text x="{left + 6}" y="26">filled to {fill}; mass out, full height {most:.3f} kg</text>')
+        svg.append(f'<text x="{left + 6}" y="26">filled to {100 * fill:g} cm; mass out, full height {most:.3f} kg</text>')
         for member in members():
             rows = results.get(member["member"])
             if rows and member["fill"] == fill:
@@ -274,7 +261,7 @@ def write_svg(results, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("sweep"), help="folder for FMUs, members and results")
+    parser.add_argument("--out", type=Path, default=Path("sweep"), help="folder for the FMU, members and results")
     parser.add_argument("--sandgate", default=shutil.which("sandgate") or "sandgate", help="the program that packs FMUs")
     parser.add_argument("--library", help="the shared library to pack, if the program shall not look for it")
     where = parser.add_mutually_exclusive_group()
@@ -283,20 +270,20 @@ def main():
     where.add_argument("--serial", action="store_true", help="no Dask and no slices: to compare with")
     arguments = parser.parse_args()
 
-    files = pack(arguments.sandgate, arguments.library, arguments.out / "fmus")
+    archive = pack(arguments.sandgate, arguments.library, arguments.out)
     if arguments.serial:
-        results = serial(files)
+        results = serial(archive)
     else:
         from dask.distributed import Client, LocalCluster
 
         store = Store(arguments.out / "members")
         if arguments.scheduler:
             with Client(arguments.scheduler) as client:
-                results = ensemble(client, files, store)
+                results = ensemble(client, archive, store)
         else:
             # One thread a worker: importers change the working directory of their process.
             with LocalCluster(n_workers=arguments.workers, threads_per_worker=1) as cluster, Client(cluster) as client:
-                results = ensemble(client, files, store)
+                results = ensemble(client, archive, store)
     write_parquet(results, arguments.out / "results.parquet")
     write_svg(results, arguments.out / "outflow.svg")
     missing = len(members()) - len(results)

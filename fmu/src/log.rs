@@ -47,7 +47,8 @@ impl Log {
         }
     }
 
-    /// Switches categories; no names mean all of them. Unknown names are refused and nothing changes.
+    /// Switches categories; no names mean all of them, as does `logAll`, the last one. Unknown names are refused and
+    /// nothing changes.
     pub(crate) fn switch(&mut self, on: bool, names: &[&str]) -> Result<(), Fault> {
         let mut wanted = self.on;
         if names.is_empty() {
@@ -62,6 +63,9 @@ impl Log {
                     all.join(", ")
                 )));
             };
+            if place + 1 == LOG_CATEGORIES.len() {
+                wanted = [on; LOG_CATEGORIES.len()];
+            }
             wanted[place] = on;
         }
         self.on = wanted;

@@ -30,7 +30,7 @@ impl Component {
             match self.table.source(*reference) {
                 // A new pool of threads costs time: only when the number is another.
                 Some(Source::Threads) if *value as usize == self.threads => {}
-                Some(Source::Threads) => self.set_threads(*value as usize),
+                Some(Source::Threads) => self.use_threads(*value as usize),
                 Some(Source::SaturateInputs) => self.life.saturate_inputs = *value != 0.0,
                 Some(Source::Adjustable(i)) => {
                     if let Some(place) = self.life.parameters.get_mut(*i) {

@@ -79,6 +79,8 @@ pub struct Component {
     engine: Box<dyn Engine>,
     /// Threads of the sweeps: no part of the state, results do not depend on it.
     threads: usize,
+    /// Threads after a reset: what the host gave, whatever `solver.threads` was set to since.
+    own_threads: usize,
     /// Inputs that were clamped since somebody asked: no part of the state.
     notes: Vec<String>,
     /// For the host: no part of the state.
@@ -127,6 +129,7 @@ impl Component {
             fingerprint,
             engine,
             threads,
+            own_threads: threads,
             notes: Vec::new(),
             host: HostSettings::of(scene),
             life,
@@ -318,12 +321,14 @@ impl Component {
         snapshot::join(life, &self.engine.save()?)
     }
 
-    /// Back to Instantiated with start values, as after `new` (threads stay). Allowed in every mode.
+    /// Back to Instantiated with start values, as after `new` (threads as [`Component::set_threads`] gave them). Allowed in
+    /// every mode.
     ///
     /// # Errors
     /// [`Error::Setup`]; the component stays as it was.
     pub fn reset(&mut self) -> Result<(), Error> {
-        (self.engine, self.life) = Self::start(&self.base, &self.table, self.threads)?;
+        (self.engine, self.life) = Self::start(&self.base, &self.table, self.own_threads)?;
+        self.threads = self.own_threads;
         self.scene = self.base.clone();
         self.built = self.life.parameters.clone();
         self.host = HostSettings::of(&self.base);
@@ -380,9 +385,15 @@ impl Component {
         self.engine.wall_time()
     }
 
-    /// Threads used by sweeps: results do not depend on it. 0 means all cores. A new component has 1. The same as
-    /// setting `solver.threads`.
+    /// Threads used by sweeps: results do not depend on it. 0 means all cores. A new component has 1. As setting
+    /// `solver.threads`, but a reset comes back to it.
     pub fn set_threads(&mut self, threads: usize) {
+        self.own_threads = threads;
+        self.use_threads(threads);
+    }
+
+    /// As many until the next reset.
+    fn use_threads(&mut self, threads: usize) {
         self.threads = threads;
         self.engine.set_threads(threads);
     }

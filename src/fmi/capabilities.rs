@@ -97,8 +97,8 @@ const RULES: &[(&str, &[&str])] = &[
         &["test_simulate_fmu_leaves_a_log_that_runs_again", "test_roll_backs_are_in_the_log_and_run_again", "test_slopes_of_inputs_run_again", "test_what_is_done_inside_steps_runs_again", "test_logging_changes_no_bit"]),
     ("a log that cannot begin is refused when initialisation ends; one that breaks off is told once, or is an Error of the step if `log.required` is true; a thousand instances with a log leave no file and no thread open",
         &["test_a_log_that_cannot_begin_is_refused_and_the_path_can_be_corrected", "test_a_full_disk_is_told_once_or_is_an_error", "test_a_thousand_instances_with_a_log_leave_nothing_open"]),
-    ("packed with `--zenoh` and with `zenoh.config` set, an FMU publishes and takes set-points while its importer steps it; the importer owns time and wins where both set an input; a hundred instances leave no socket, no file and no thread but Zenoh's three",
-        &["test_a_client_watches_an_fmu_that_fmpy_steps", "test_publishing_changes_no_bit", "test_set_points_hold_from_the_next_step_but_the_importer_wins", "test_instances_with_log_and_zenoh_leave_what_is_documented"]),
+    ("packed with `--zenoh` and with `zenoh.config` set, an FMU publishes and takes set-points while its importer steps it; the importer owns time and wins where both set an input; a thousand instances with log and Zenoh leave no socket, no file and no thread but Zenoh's three",
+        &["test_a_client_watches_an_fmu_that_fmpy_steps", "test_publishing_changes_no_bit", "test_set_points_hold_from_the_next_step_but_the_importer_wins", "test_a_thousand_instances_with_log_and_zenoh_leave_what_is_documented"]),
     ("a thousand states got and freed grow memory by less than one state", &["test_a_thousand_states_leave_no_memory_behind"]),
     ("a panic answers Error; that instance waits for reset or a state, others go on", &["a_panic_ends_at_the_wall_and_reset_or_a_state_puts_things_right"]),
     ("results do not depend on threads, on logging, on who watches", &["threads_do_not_change_a_bit", "updates_come_after_internal_steps_and_watching_changes_no_bit", "every_way_to_run_a_channel_gives_the_same_bits_and_states_are_safe"]),
@@ -106,6 +106,14 @@ const RULES: &[(&str, &[&str])] = &[
     ("arrays of FMI 3 have their elements as scalars beside them; a wrong number of values is refused", &["test_fmi_3_arrays_and_their_elements_agree"]),
     ("the descriptions are valid and complete: units, display units, types, InitialUnknowns, DefaultExperiment with four attributes", &["test_fmpy_finds_no_fault", "test_the_description_is_complete"]),
     ("the same scene and library give the same archive, byte for byte", &["packing_twice_gives_the_same_bytes"]),
+    ("every case's FMUs pass FMPy's and FMU Manipulation Toolbox's checks, and FMI Library has no warning for them; ecos and libcosim get the bits of the C interface",
+        &["every_case_s_fmus_pass_all_checks", "test_fmi_library_has_no_complaint_about_any_case", "test_ecos", "test_libcosim"]),
+    ("a scene of several phases (a silted dam) is an FMU like any other: levels and discharge of each phase, states, logs, parameters",
+        &["test_water_and_silt_flow_out_and_every_kilogram_is_accounted_for", "test_states_go_back_and_to_other_instances_with_the_same_bits", "test_its_log_runs_again_with_roll_backs", "test_levels_and_materials_are_parameters"]),
+    ("a controller that moves the gate holds a depth within 5 %, and a master that does each step three times from saved states gets the same trajectory",
+        &["test_the_depth_is_held_with_and_without_roll_back"]),
+    ("an ensemble over parameters and inputs has the bits of a serial run on any number of workers, also when one is killed", &["test_a_killed_worker_changes_no_bit_and_costs_a_slice"]),
+    ("the C interface leaves memory alone and nothing behind, under valgrind and the address sanitizer", &["a_client_in_c_leaves_its_memory_alone_and_nothing_behind"]),
 ];
 
 /// Attributes of `CoSimulation` behind the model identifier.
@@ -160,7 +168,7 @@ pub fn fmi_markdown() -> String {
         let _ = writeln!(text, "| {rule} | {} |", tests(proof));
     }
     text.push_str(
-        "\n`test_*` are in tests/python/test_fmu.py, test_fmu_log.py and test_fmu_zenoh.py; the others in tests/it, tests/contract (run for the component, FMI 2, FMI 3 \
+        "\n`test_*` are in tests/python; the others in tests/it, tests/contract (run for the component, FMI 2, FMI 3 \
          and C) and fmu/src.\n",
     );
     text

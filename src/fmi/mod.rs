@@ -48,8 +48,9 @@ impl FmiVersion {
     }
 }
 
-/// Categories of log messages and what they hold; the only list.
-pub const LOG_CATEGORIES: [(&str, &str); 3] = [
+/// Categories of log messages and what they hold; the only list. The last one is no category of messages: switching it
+/// switches all others, as importers ask for that do not read this list.
+pub const LOG_CATEGORIES: [(&str, &str); 4] = [
     (
         "logStatusError",
         "Calls that were refused or failed: what was found, what is allowed, what to do.",
@@ -62,4 +63,5 @@ pub const LOG_CATEGORIES: [(&str, &str); 3] = [
         "logEvents",
         "Instantiation, initialisation, reset, restored states, and the internal steps of each communication step.",
     ),
+    ("logAll", "All categories."),
 ];

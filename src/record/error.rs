@@ -92,6 +92,17 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// Its chunks are compressed; this program writes and reads logs as they are.
+    #[error(
+        "log {path} is compressed with {with}: viewers open it, these commands read logs that are not compressed; \
+         make one of it with `mcap decompress {path} -o FILE`"
+    )]
+    Compressed {
+        /// The file.
+        path: PathBuf,
+        /// Name of the method: `zstd`, `lz4`.
+        with: String,
+    },
     /// A message is not what its channel says.
     #[error(
         "log {path}: message {sequence} of {topic} is not a {schema}: {why}; \

@@ -256,6 +256,12 @@ impl RawReader {
                     self.ending = Some(Ending::Complete);
                     break;
                 }
+                Some(Err(McapError::UnsupportedCompression(with))) => {
+                    // Asked again it has no more to say.
+                    self.ending = Some(Ending::Complete);
+                    let path = self.path.clone();
+                    return Err(ReadError::Compressed { path, with });
+                }
                 Some(Err(error)) => {
                     self.cut(&error);
                     break;

@@ -137,7 +137,15 @@ pub(crate) fn reset_is_as_new(stage: &Stage) {
     let expected = run(stage, stage.stepping().as_mut(), 3);
     let mut driver = stage.stepping();
     run(stage, driver.as_mut(), 2);
+    let threads = [stage.reference("solver.threads")];
+    let start = driver.get(&threads, 1).unwrap();
+    driver.set(&threads, &[start[0] + 1.0]).unwrap();
     driver.reset().unwrap();
+    assert_eq!(
+        driver.get(&threads, 1).unwrap(),
+        start,
+        "solver.threads has a start value, too"
+    );
     assert!(
         driver.save().unwrap() == new,
         "a reset instance is not as a new one"

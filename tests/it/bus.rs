@@ -707,5 +707,22 @@ fn python_clients_watch_and_drive_a_served_silo() {
 #[test]
 fn the_examples_do_what_they_say() {
     let program = env!("CARGO_BIN_EXE_sandgate");
-    python::pytest("test_examples.py", &[("SANDGATE", OsStr::new(program))]);
+    // `cargo test --test it` builds no examples.
+    python::run(
+        "cargo build --example bus_client",
+        std::process::Command::new(env!("CARGO"))
+            .args(["build", "--release", "--example", "bus_client"])
+            .arg("--target-dir")
+            .arg(python::target())
+            .current_dir(python::root()),
+        "the client in Rust builds",
+    );
+    let client = python::target().join("release/examples/bus_client");
+    python::pytest(
+        "test_examples.py",
+        &[
+            ("SANDGATE", OsStr::new(program)),
+            ("SANDGATE_RUST_CLIENT", client.as_os_str()),
+        ],
+    );
 }

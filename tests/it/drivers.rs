@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use sandgate::fmi::library::Kind;
 use sandgate::fmi::{self, Extent, FmiVersion, Packing};
@@ -40,17 +41,23 @@ fn scenes(folder: &str) -> Vec<PathBuf> {
     files
 }
 
+/// FMUs of every case, packed once for all tests: FMI 2, FMI 3, FMI 2, ...
+fn of_all_cases() -> &'static [PathBuf] {
+    static FMUS: OnceLock<Vec<PathBuf>> = OnceLock::new();
+    FMUS.get_or_init(|| {
+        let folder = scratch("checks");
+        let cases = ["cases", "cases/paper_a", "cases/phases"]
+            .map(scenes)
+            .concat();
+        assert!(cases.len() > 20);
+        let pack = |case: &PathBuf| packed(case, &folder, Extent::Until(0.0));
+        cases.iter().flat_map(pack).collect()
+    })
+}
+
 #[test]
 fn every_case_s_fmus_pass_all_checks() {
-    let folder = scratch("checks");
-    let mut cases = scenes("cases");
-    cases.extend(scenes("cases/paper_a"));
-    assert!(cases.len() > 12);
-    let fmus: Vec<PathBuf> = cases
-        .iter()
-        .flat_map(|case| packed(case, &folder, Extent::Until(0.0)))
-        .collect();
-    let fmus = joined(&fmus);
+    let fmus = joined(of_all_cases());
     pytest("test_checks.py", &[("SANDGATE_FMUS", &fmus)]);
 }
 
@@ -67,7 +74,10 @@ fn importers_get_the_reference_results() {
 fn other_drivers_get_the_bits_of_the_c_interface() {
     let scene = root().join("tests/scenes/small_silo.toml");
     let [two, three] = packed(&scene, &scratch("drivers"), Extent::Until(0.0));
-    let environment: [(&str, &OsStr); 4] = [
+    let cases: Vec<PathBuf> = of_all_cases().iter().step_by(2).cloned().collect();
+    let cases = joined(&cases);
+    let environment: [(&str, &OsStr); 5] = [
+        ("SANDGATE_CASES", &cases),
         ("SANDGATE_SCENE", scene.as_ref()),
         ("SANDGATE_LIBRARY", library().as_ref()),
         ("SANDGATE_FMU2", two.as_ref()),
@@ -94,4 +104,16 @@ fn an_ensemble_survives_a_killed_worker_bit_for_bit() {
         ("SANDGATE_LIBRARY", library().as_ref()),
     ];
     pytest("test_ensemble.py", &environment);
+}
+
+#[test]
+fn a_silted_dam_is_an_fmu_like_any_other() {
+    let scene = root().join("cases/silted_dam_reduced.toml");
+    let [two, three] = packed(&scene, &scratch("dam"), Extent::Until(0.0));
+    let environment: [(&str, &OsStr); 3] = [
+        ("SANDGATE_FMU2", two.as_ref()),
+        ("SANDGATE_FMU3", three.as_ref()),
+        ("SANDGATE_PROGRAM", env!("CARGO_BIN_EXE_sandgate").as_ref()),
+    ];
+    pytest("test_dam.py", &environment);
 }

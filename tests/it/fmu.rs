@@ -201,6 +201,38 @@ fn fmus_publish_on_zenoh_and_take_set_points() {
     pytest("test_fmu_zenoh.py", &environment);
 }
 
+/// Whether every part of the benchmarks works; what it measures here, beside other tests, is not looked at.
+#[test]
+fn the_cost_of_the_interfaces_can_be_measured() {
+    let libraries = [library().to_path_buf(), library_with_zenoh()];
+    let folder = scratch("benchmarks");
+    for file in libraries {
+        let name = file.file_name().expect("a file has a name");
+        fs::copy(&file, folder.join(name)).expect("the scratch folder is writable");
+    }
+    let program = Path::new(env!("CARGO_BIN_EXE_sandgate"));
+    fs::copy(program, folder.join("sandgate")).expect("the scratch folder is writable");
+    let output = run(
+        "tests/python/benchmarks.py --quick",
+        Command::new(crate::python::program("python"))
+            .arg(root().join("tests/python/benchmarks.py"))
+            .args(["--quick", "--target"])
+            .arg(&folder),
+        "the script says what went wrong",
+    );
+    let text = String::from_utf8_lossy(&output.stdout);
+    for part in [
+        "gauge variables",
+        "round trip",
+        "gauges lost",
+        "SIGSTOP",
+        "25 Hz",
+        "replay",
+    ] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+}
+
 #[test]
 fn packing_twice_gives_the_same_bytes() {
     let (first, second) = (scratch("pack_first"), scratch("pack_second"));

@@ -45,6 +45,30 @@ fn page(folder: &Path) -> PathBuf {
     page
 }
 
+/// A page of a scene with two materials.
+fn page_of_phases(folder: &Path) -> PathBuf {
+    let (out, page) = (folder.join("dam"), folder.join("dam.html"));
+    let program = env!("CARGO_BIN_EXE_sandgate");
+    python::run(
+        "sandgate run",
+        Command::new(program)
+            .arg("run")
+            .arg(python::root().join("cases/silted_dam_reduced.toml"))
+            .args(["--until", "0.2 s", "--out"])
+            .arg(&out),
+        "the program says what is wrong",
+    );
+    let log = out.join("run.mcap");
+    let mut command = Command::new(program);
+    command.arg("report").arg(log).arg("-o").arg(&page);
+    python::run(
+        "sandgate report",
+        &mut command,
+        "the program says what is wrong",
+    );
+    page
+}
+
 fn browser() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let names = ["chromium", "chromium-browser", "google-chrome"];
@@ -130,6 +154,7 @@ fn a_browser_shows_the_page() {
         "test_report.py",
         &[
             ("SANDGATE_PAGE", page.as_os_str()),
+            ("SANDGATE_PHASES", page_of_phases(folder.path()).as_os_str()),
             ("SANDGATE_BROWSER", browser.as_os_str()),
             ("SANDGATE_PICTURES", pictures.as_os_str()),
             (

@@ -85,7 +85,8 @@ fn devices_and_gauges_bring_their_variables() {
     let names: Vec<&str> = table.rows().iter().map(|v| v.name.as_str()).collect();
     let expected = "time solver.threads saturate_inputs solver.resolution_scale solver.quality \
         material.beads.static_friction_angle material.beads.dynamic_friction_angle \
-        material.beads.inertial_number_scale material.beads.grain_diameter gauge.depth.foot_x gauge.depth.foot_y \
+        material.beads.inertial_number_scale material.beads.grain_diameter material.beads.cohesion \
+        body.heap.lower_x body.heap.upper_x body.heap.lower_y body.heap.upper_y gauge.depth.foot_x gauge.depth.foot_y \
         gauge.surface.from_x gauge.surface.from_y gauge.surface.to_x gauge.surface.to_y gauge.past_gate.from_x \
         gauge.past_gate.from_y gauge.past_gate.to_x gauge.past_gate.to_y gauge.probe.at_x gauge.probe.at_y \
         gauge.front.origin_x gauge.front.origin_y gate.sluice.opening gate.sluice.actual_opening gate.sluice.blocked \

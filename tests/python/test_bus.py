@@ -9,6 +9,7 @@ import random
 import re
 import resource
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -289,6 +290,40 @@ def test_a_repeated_request_gets_the_same_reply_and_no_second_step(session, silo
     assert other["code"] == "conflict"
 
 
+def test_two_clients_that_step_at_once_make_as_many_steps_as_replies_say(session, silo):
+    """Half of the requests say where they believe the component to be: these are conflicts or steps, nothing between."""
+    replies, lock = {"a": [], "b": []}, threading.Lock()
+
+    def drive(name):
+        own = Component(session, "small_silo", client=name)
+        expected = 0
+        for k in range(60):
+            fields = {"expect_step": expected} if k % 2 else {}
+            try:
+                reply = own.ask("step", dt_ns=100_000, **fields)
+            except Refused as refused:
+                reply = refused.reply
+            expected = reply["step"]
+            with lock:
+                replies[name].append(reply)
+
+    threads = [threading.Thread(target=drive, args=[name]) for name in replies]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    everything = replies["a"] + replies["b"]
+    assert len(everything) == 120 and len({reply["req"] for reply in everything}) == 120
+    made = [reply["step"] for reply in everything if reply["ok"]]
+    refused = [reply for reply in everything if not reply["ok"]]
+    assert all(reply["code"] == "conflict" for reply in refused)
+    # Each step was made once, and for one reply.
+    assert sorted(made) == list(range(1, len(made) + 1)) and len(made) >= 60
+    assert silo.ask("status")["step"] == len(made)
+    # Both were served: neither waited until the other was done.
+    assert all(any(reply["ok"] for reply in mine) for mine in replies.values())
+
+
 def test_a_wrong_expectation_is_a_conflict(silo):
     silo.ask("step", expect_step=0, t_ns=0)
     for wrong in [{"expect_step": 0}, {"t_ns": 0}]:
@@ -435,6 +470,20 @@ def test_an_orchestrator_that_falls_silent_is_noticed():
         subscriber.undeclare()
 
 
+def test_a_heartbeat_keeps_an_orchestrator_that_thinks_for_long():
+    with served("--lost-after", "2 s") as (_, session, silo):
+        subscriber, told = subscribe(session, f"{BASE}/out/log")
+        step = silo.ask("step")["step"]
+        began = time.monotonic()
+        while time.monotonic() - began < 3.0:
+            assert silo.ask("pause")["step"] == step
+            assert silo.ask("status")["orchestrator_lost"] is False
+            time.sleep(0.1)
+        assert told.empty()
+        until(lambda: silo.ask("status")["orchestrator_lost"])
+        subscriber.undeclare()
+
+
 def test_a_component_goes_on_without_its_orchestrator():
     with served("--lost-after", "0.3 s", "--when-lost", "continue") as (_, _, silo):
         step = silo.ask("step")["step"]
@@ -538,6 +587,36 @@ def test_a_name_is_served_once():
         with open_session(server.endpoint) as session:
             until(lambda: raw(session, "sandgate/v1/second/@rpc/status", timeout=1))
         other.end()
+
+
+def router(endpoint):
+    """A router, as `zenohd` is one, at an endpoint that others know."""
+    config = zenoh.Config()
+    config.insert_json5("mode", '"router"')
+    config.insert_json5("listen/endpoints", json.dumps([endpoint]))
+    config.insert_json5("scouting/multicast/enabled", "false")
+    return zenoh.open(config)
+
+
+def test_a_router_that_comes_back_is_found_again():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{free.getsockname()[1]}"
+    first = router(endpoint)
+    server = Server("--connect", endpoint)
+    try:
+        until(lambda: raw(first, f"{BASE}/@rpc/status", timeout=1))
+        Component(first, "small_silo").ask("step")
+        first.close()
+        with router(endpoint) as second:
+            until(lambda: raw(second, f"{BASE}/@rpc/status", timeout=1), seconds=60)
+            assert Component(second, "small_silo").ask("step")["step"] == 2
+            # What it publishes arrives there, too.
+            subscriber, arrived = subscribe(second, f"{BASE}/out/stats")
+            until(lambda: Component(second, "small_silo").ask("step") and not arrived.empty())
+            subscriber.undeclare()
+    finally:
+        server.end()
 
 
 def test_all_traffic_is_logged(tmp_path):

@@ -1,6 +1,7 @@
 """Other people's co-simulation drivers step our FMUs and read what the plain C interface gives: ecos, libcosim.
 
 SANDGATE_SCENE    a scene with a gate `main` and a gauge `level`
+SANDGATE_CASES    FMUs of all cases for FMI 2
 SANDGATE_LIBRARY  the shared library; SANDGATE_FMU2, SANDGATE_FMU3 the scene packed. Run by tests/it/drivers.rs.
 """
 
@@ -65,6 +66,30 @@ def test_libcosim(reference):
     assert [line for line in complaints if "Enumeration variable type not supported" not in line] == []
 
 
+def test_fmi_library_has_no_complaint_about_any_case():
+    """libcosim reads each description with FMI Library and makes an instance; all in one process, whose log is read."""
+    cases = ENV["SANDGATE_CASES"].split(os.pathsep)
+    assert len(cases) > 20
+    done = subprocess.run([sys.executable, __file__, "load", *cases], capture_output=True, text=True)
+    said = done.stdout + done.stderr
+    assert done.returncode == 0, said
+    assert said.count("[FMI Library: FMI2XML] Parsing XML element ModelVariables") == len(cases), "its log was not caught"
+    complaints = [line for line in said.splitlines() if re.search(r"\[(warning|error|fatal)\]", line)]
+    assert [line for line in complaints if "Enumeration variable type not supported" not in line] == []
+
+
+def load(*paths):
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    log_output_level(CosimLogLevel.TRACE)
+    for path in paths:
+        execution = CosimExecution.from_step_size(NANOSECONDS)
+        assert execution.add_local_slave(CosimLocalSlave(path, "instance")) >= 0
+    return []
+
+
 def ecos(path, threads):
     # ecospy's library needs oneTBB, which its package does not bring; the package `tbb` puts it here.
     import ctypes
@@ -105,5 +130,5 @@ def cosim(path):
 
 
 if __name__ == "__main__":
-    values = {"ecos": ecos, "cosim": cosim}[sys.argv[1]](*sys.argv[2:])
+    values = {"ecos": ecos, "cosim": cosim, "load": load}[sys.argv[1]](*sys.argv[2:])
     print("\nvalues", *[bits(v) for v in values], flush=True)

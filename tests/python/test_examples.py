@@ -1,4 +1,7 @@
-"""The example clients on served scenes: SANDGATE is the program, SANDGATE_ROOT the source tree."""
+"""The example clients on served scenes: SANDGATE is the program, SANDGATE_ROOT the source tree.
+
+SANDGATE_RUST_CLIENT  examples/bus_client.rs, built
+"""
 
 import os
 import pathlib
@@ -66,3 +69,22 @@ def test_gauges_are_plotted_as_they_arrive(serve, tmp_path):
     assert gauges == 5 and values > 5 * 20 and lost == 0, out
     data = picture.read_bytes()
     assert data[:8] == b"\x89PNG\r\n\x1a\n" and struct.unpack(">II", data[16:24]) == (1080, 840)
+
+
+def test_the_client_in_rust_says_what_the_one_in_python_says(serve):
+    said = {}
+    for name, command in (
+        ("python", [sys.executable, str(ROOT / "examples/bus_client.py")]),
+        ("rust", [os.environ["SANDGATE_RUST_CLIENT"]]),
+    ):
+        endpoint = serve("small_silo")
+        done = subprocess.run([*command, endpoint, "small_silo"], capture_output=True, text=True, timeout=120)
+        assert done.returncode == 0, done.stderr
+        said[name] = done.stdout
+    number = r"-?\d+\.?\d*(?:e-?\d+)?"
+    for pattern in (rf"step 10: gate at ({number})", rf"gauge.level.depth = ({number}) m", rf"mass present ({number}) kg"):
+        python, rust = (float(re.search(pattern, said[name])[1]) for name in ("python", "rust"))
+        # The same simulation; what is printed is rounded differently.
+        assert rust > 0 and abs(python - rust) < 6e-3, said
+    assert len(re.findall("^t = ", said["rust"], re.M)) == len(re.findall("^t = ", said["python"], re.M)) > 4
+    assert "refused, range: set: gate.main.opening: found 1.5, allowed a number from 0 to 1" in said["rust"]

@@ -1,6 +1,6 @@
 """Exported tables and pictures, read by others' readers and compared with the log.
 
-SANDGATE_CSV, SANDGATE_PARQUET, SANDGATE_VTK (folder), SANDGATE_LOG
+SANDGATE_CSV, SANDGATE_PARQUET, SANDGATE_VTK (folder), SANDGATE_LOG, SANDGATE_PROGRAM
 """
 
 import csv
@@ -8,11 +8,14 @@ import os
 import pathlib
 import re
 import struct
+import subprocess
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pyarrow.parquet
+import pytest
 from mcap.reader import make_reader
+from mcap.writer import CompressionType, Writer
 from mcap_protobuf.decoder import DecoderFactory
 
 
@@ -28,7 +31,7 @@ def test_parquet_has_the_same_bits_as_the_table():
     assert table.column("step").to_pylist() == list(range(41))
     notes = file.metadata.metadata
     assert notes[b"unit.gauge.level.depth"] == b"m"
-    assert notes[b"unit.gauge.load.force[1]" if b"unit.gauge.load.force[1]" in notes else b"unit.time"] in (b"N", b"s")
+    assert notes[b"unit.gauge.load.force_y"] == b"N" and notes[b"unit.time"] == b"s"
 
 
 def clouds():
@@ -98,3 +101,21 @@ def test_the_gate_is_where_it_was():
     assert abs(lefts[0] - 0.024) < 1e-6
     assert abs(lefts[2] - 0.056) < 1e-6
     assert re.fullmatch(r"walls-\d{6}\.vtp", collection("walls.pvd")[0][1].name)
+
+
+@pytest.mark.parametrize("method", [CompressionType.ZSTD, CompressionType.LZ4])
+def test_a_log_that_somebody_compressed_is_refused_with_what_to_do(method, tmp_path):
+    path = tmp_path / "small.mcap"
+    with open(os.environ["SANDGATE_LOG"], "rb") as stream, open(path, "wb") as copy:
+        writer = Writer(copy, compression=method)
+        writer.start()
+        channels = {}
+        for schema, channel, message in make_reader(stream).iter_messages(log_time_order=False):
+            if channel.id not in channels:
+                known = writer.register_schema(schema.name, schema.encoding, schema.data)
+                channels[channel.id] = writer.register_channel(channel.topic, channel.message_encoding, known, channel.metadata)
+            writer.add_message(channels[channel.id], message.log_time, message.data, message.publish_time, message.sequence)
+        writer.finish()
+    for verb in (["log", "info"], ["log", "cat"], ["log", "redrive", "--check"], ["log", "export", "--csv", tmp_path / "g.csv"]):
+        done = subprocess.run([os.environ["SANDGATE_PROGRAM"], *verb, path], capture_output=True, text=True)
+        assert done.returncode == 5 and "mcap decompress" in done.stderr, (verb, done.stdout, done.stderr)

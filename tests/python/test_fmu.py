@@ -268,6 +268,18 @@ def test_nothing_is_logged_when_logging_is_off(version):
     run(fmu, first=1, last=2)
     assert [category for _, category, _ in fmu.messages] == ["logEvents"]
     assert "internal steps" in fmu.messages[0][2]
+    fmu.fmu.setDebugLogging(False, ["logAll"])
+    fmu.messages.clear()
+    run(fmu, first=2, last=3)
+    assert fmu.messages == []
+    fmu.fmu.setDebugLogging(True, ["logAll"])
+    run(fmu, first=3, last=4)
+    with pytest.raises(FMICallException):
+        fmu.step(1.0, H)
+    assert [category for _, category, _ in fmu.messages] == ["logEvents", "logStatusError"]
+    with pytest.raises(FMICallException):
+        fmu.fmu.setDebugLogging(True, ["logNothing"])
+    assert "found logNothing, allowed logStatusError" in fmu.messages[-1][2]
     fmu.free()
 
 

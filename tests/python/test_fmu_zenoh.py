@@ -207,20 +207,30 @@ def open_things():
     return len(os.listdir("/proc/self/task")), len(os.listdir("/proc/self/fd"))
 
 
-def test_instances_with_log_and_zenoh_leave_what_is_documented(tmp_path):
+def sockets():
+    """Sockets and listeners of this process."""
+    links = (f"/proc/self/fd/{fd}" for fd in os.listdir("/proc/self/fd"))
+    return sum(os.path.exists(link) is False and "socket:" in os.readlink(link) for link in links if os.path.islink(link))
+
+
+@both
+def test_a_thousand_instances_with_log_and_zenoh_leave_what_is_documented(version, tmp_path):
     """Zenoh's own threads stay with the process, as many as after the first session, and no socket and no file."""
-    fmu = Fmu(FMUS[3], logging=False)
+    fmu = Fmu(FMUS[version], logging=False)
     reference = {name: fmu.variables[name].valueReference for name in ("log.path", "zenoh.config")}
     first = None
-    for k in range(100):
+    for k in range(1000):
         fmu.fmu.setString(list(reference.values()), [str(tmp_path / f"{k}.mcap"), "{}"])
         fmu.initialize()
-        fmu.fmu.fmi3FreeInstance(fmu.fmu.component)
-        fmu.fmu.instantiate()
+        getattr(fmu.fmu, f"fmi{version}FreeInstance")(fmu.fmu.component)
+        if version == 2:
+            fmu.fmu.instantiate(callbacks=fmu.callbacks)
+        else:
+            fmu.fmu.instantiate()
         if k == 4:
-            first = open_things()
-    until(lambda: open_things() <= first)
-    assert len(os.listdir(tmp_path)) == 100
+            first = *open_things(), sockets()
+    until(lambda: all(now <= then for now, then in zip((*open_things(), sockets()), first)))
+    assert len(os.listdir(tmp_path)) == 1000 and not any(file.name.endswith(".part") for file in tmp_path.iterdir())
     fmu.free()
 
 

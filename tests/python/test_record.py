@@ -10,6 +10,8 @@ import math
 import os
 import pathlib
 import struct
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -223,3 +225,19 @@ def test_a_killed_process_leaves_a_log_that_reads_to_the_last_second():
     assert {"Metadata", "Attachment", "Schema", "Channel", "Message"} <= kinds
     # The recorder's bound is 0.75 s; a busy machine may run its thread later.
     assert float(os.environ["SANDGATE_KILLED_AT"]) - written * 1e-9 < 2
+
+
+@pytest.mark.parametrize("colour", ["pressure", "phase"])
+def test_rerun_shows_particles_by_what_was_chosen(colour, tmp_path):
+    """examples/rerun_view.py: what it makes of a log is verified and counted by Rerun's own tools."""
+    rrd = tmp_path / "silo.rrd"
+    root = pathlib.Path(os.environ["SANDGATE_ROOT"])
+    command = [sys.executable, root / "examples/rerun_view.py", LOG, "--colour", colour, "--save", rrd]
+    subprocess.run(command, check=True, capture_output=True, text=True)
+    rerun = pathlib.Path(sys.prefix) / "bin/rerun"
+    verified = subprocess.run([rerun, "rrd", "verify", rrd], capture_output=True, text=True)
+    assert verified.returncode == 0 and "1 file verified without error" in verified.stderr, verified.stderr
+    said = subprocess.run([rerun, "rrd", "stats", rrd], capture_output=True, text=True).stdout
+    # Walls, gate, drain, particles; four gauges with one value.
+    for entity in ("/scene/particles", "/scene/gate/main", "/scene/wall/left", "/gauges/m/gauge.level.depth"):
+        assert entity in said, said

@@ -1,6 +1,6 @@
 """Clicks through a report in a headless browser and looks at the picture.
 
-SANDGATE_PAGE, SANDGATE_LOG (what it was made of), SANDGATE_BROWSER (program), SANDGATE_PICTURES (folder for pictures)
+SANDGATE_PAGE, SANDGATE_LOG (what it was made of), SANDGATE_PHASES (a page of two materials), SANDGATE_BROWSER (program), SANDGATE_PICTURES (folder for pictures)
 """
 
 import base64
@@ -16,6 +16,7 @@ from mcap_protobuf.decoder import DecoderFactory
 from playwright.sync_api import expect, sync_playwright
 
 PAGE = pathlib.Path(os.environ["SANDGATE_PAGE"]).as_uri()
+PHASES = pathlib.Path(os.environ["SANDGATE_PHASES"]).as_uri()
 PICTURES = pathlib.Path(os.environ["SANDGATE_PICTURES"])
 
 
@@ -40,7 +41,7 @@ def page(browser):
     page.on("console", lambda line: errors.append(line.text) if line.type == "error" else None)
     page.goto(PAGE)
     yield page
-    assert asked == [PAGE]
+    assert set(asked) <= {PAGE, PHASES} and asked[0] == PAGE
     assert errors == []
     context.close()
 
@@ -191,3 +192,24 @@ def test_a_narrow_screen_has_no_sideways_scroll(page):
     page.set_viewport_size({"width": 390, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.screenshot(path=PICTURES / "narrow.png")
+
+
+def test_materials_have_colours_of_their_own(page):
+    assert page.locator("#colour option[value=phase]").count() == 0, "one material needs no colours"
+    page.goto(PHASES)
+    page.locator("#gauges").uncheck()
+    page.locator("#colour").select_option("phase")
+    expect(page.locator("#legend")).to_contain_text("water")
+    expect(page.locator("#legend")).to_contain_text("silt")
+    places = {}
+    for index in (0, int(page.locator("#slider").get_attribute("max"))):
+        go(page, index)
+        for colour in ("--s0", "--s1"):
+            rows, columns = coloured(page, colour)
+            assert len(rows) > 100, (index, colour)
+            places[index, colour] = rows.mean(), columns.max()
+    # At the start silt lies below water (rows count downwards); later both have come further to the right.
+    water, silt = places[0, "--s0"], places[0, "--s1"]
+    assert silt[0] > water[0] + 5
+    assert places[index, "--s1"][1] > silt[1] + 3
+    page.locator("#particles .card").screenshot(path=PICTURES / "phase.png")

@@ -42,6 +42,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let topics = args.choice.topics();
     let mut readers = Readers::new();
     let mut out = BufWriter::new(std::io::stdout().lock());
+    let mut printed = 0_u64;
     for entry in reader.by_ref() {
         let RawEntry::Message(message) = entry? else {
             continue;
@@ -56,8 +57,16 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             as_text(&message, &value)
         };
         writeln!(out, "{line}").map_err(cannot_print)?;
+        printed += 1;
     }
     out.flush().map_err(cannot_print)?;
+    if printed == 0 {
+        eprintln!(
+            "warning: {}: no message has such a topic and time; see both with `sandgate log info`, and note that * stands \
+             for one level of a topic, ** for any number",
+            args.file.display()
+        );
+    }
     if let Some(ending) = reader.ending() {
         warn_unless_complete(&args.file, ending);
     }

@@ -51,7 +51,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     let log = lift.log(run);
     let (dimension, domain) = (lift.dimension, lift.domain);
     let domain = domain?;
-    let adjustables = super::adjust::adjustables(raw, domain.lower, domain.upper, dimension.axes());
+    let adjustables = super::adjust::adjustables(raw, &bodies, &domain, dimension);
     Some(Scene {
         name: raw.name.as_ref()?.value.0.clone(),
         title: raw.title.as_ref()?.value.0.clone(),

@@ -1,17 +1,18 @@
-//! What of a scene may be changed without touching its text: resolution, values of materials worth calibrating, wall
-//! friction, places of gauges. A component shows these numbers as fixed parameters.
+//! What of a scene may be changed without touching its text: resolution, values of materials worth calibrating, extents
+//! and fill levels of bodies, wall friction, places of gauges. A component shows these numbers as fixed parameters.
 //!
 //! A change goes into what was read of the text, before it is checked, so that every rule of scenes holds for the
 //! changed scene too and everything derived (sound speed, time scales, lengths of lines) follows. A number at its
 //! start value changes nothing, not even a bit.
 
+mod bodies;
+mod materials;
+
+use self::bodies::BodyKey;
+use self::materials::MaterialKey;
 use super::Quality;
-use super::lift;
-use super::raw::{
-    Angle, At, Coordinates, Entry, Length, Named, Place, Pressure, Ratio, RawGauge, RawMaterial,
-    RawScene, Viscosity,
-};
-use super::types::{Point, Scene};
+use super::raw::{At, Coordinates, Entry, Length, Named, Place, Ratio, RawGauge, RawScene};
+use super::types::{Body, Dimension, Domain, Scene, up};
 use super::{SceneErrors, parse_changed};
 
 /// A number of a scene that may be changed before a component is initialised.
@@ -38,28 +39,13 @@ enum Target {
     Resolution,
     Quality,
     Material(usize, MaterialKey),
+    Body(usize, BodyKey),
     WallFriction(usize),
     /// Section, point of the gauge, axis.
     Gauge(usize, usize, usize),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum MaterialKey {
-    StaticAngle,
-    DynamicAngle,
-    Angle,
-    InertialScale,
-    Diameter,
-    Consistency,
-    YieldStress,
-}
-
-/// 180/pi: degrees of a radian.
-const DEGREES: Option<(&str, f64)> = Some(("deg", 57.295_779_513_082_32));
 const MILLIMETRES: Option<(&str, f64)> = Some(("mm", 1000.0));
-/// Friction angles [rad]: the scene's own limits, and not so small that nothing but a fluid is left.
-const ANGLES: (f64, f64) = (0.01, 1.25);
-
 impl Scene {
     /// The scene with other values of its [`Scene::adjustables`], in their order.
     ///
@@ -82,13 +68,15 @@ impl Scene {
     }
 }
 
-/// All numbers of a scene that may be changed: resolution, quality, materials, walls, gauges.
+/// All numbers of a scene that may be changed: resolution, quality, materials, bodies, walls, gauges. `lifted` are the scene's
+/// bodies.
 pub(super) fn adjustables(
     raw: &RawScene,
-    lower: Point,
-    upper: Point,
-    axes: usize,
+    lifted: &[Body],
+    domain: &Domain,
+    dimension: Dimension,
 ) -> Vec<Adjustable> {
+    let (lower, upper, axes) = (domain.lower, domain.upper, dimension.axes());
     let mut list = vec![Adjustable {
         name: "solver.resolution_scale".to_owned(),
         description:
@@ -114,7 +102,19 @@ pub(super) fn adjustables(
         });
     }
     for (i, (name, material)) in sections(raw.materials.as_ref()).enumerate() {
-        materials(i, name, material, &mut list);
+        materials::list(i, name, material, &mut list);
+    }
+    for (i, (name, body)) in sections(raw.bodies.as_ref()).enumerate() {
+        let up = up(domain.gravity, dimension);
+        let shape = lifted.iter().find(|b| b.name == name).map(|b| &b.shape);
+        bodies::list(
+            i,
+            name,
+            body,
+            shape,
+            &bodies::Space { domain, up, axes },
+            &mut list,
+        );
     }
     for (i, (name, wall)) in sections(raw.walls.as_ref()).enumerate() {
         if let Some(friction) = &wall.wall_friction {
@@ -148,110 +148,6 @@ pub(super) fn adjustables(
         }
     }
     list
-}
-
-fn materials(i: usize, name: &str, material: &RawMaterial, list: &mut Vec<Adjustable>) {
-    let mut add = |key: &str, text: &str, target, start: Option<f64>, range| {
-        let (unit, display_unit) = match target {
-            MaterialKey::InertialScale => ("1", None),
-            MaterialKey::Diameter => ("m", MILLIMETRES),
-            MaterialKey::Consistency => ("Pa.s", None),
-            MaterialKey::YieldStress => ("Pa", None),
-            _ => ("rad", DEGREES),
-        };
-        if let Some(start) = start {
-            list.push(Adjustable {
-                name: format!("material.{name}.{key}"),
-                description: format!("{text} of material {name}"),
-                unit,
-                display_unit,
-                start,
-                range: around(range, start),
-                target: Target::Material(i, target),
-            });
-        }
-    };
-    let (preset, statically, dynamically, scale, diameter) = match material {
-        RawMaterial::MuI(m) => (
-            &m.preset,
-            &m.static_friction_angle,
-            &m.dynamic_friction_angle,
-            &m.inertial_number_scale,
-            &m.grain_diameter,
-        ),
-        RawMaterial::BarkerGray(m) => (
-            &m.preset,
-            &m.static_friction_angle,
-            &m.dynamic_friction_angle,
-            &m.inertial_number_scale,
-            &m.grain_diameter,
-        ),
-        RawMaterial::ConstantFriction(m) => {
-            let start = m.friction_angle.as_ref().map(|a| a.value.0);
-            add(
-                "friction_angle",
-                "friction angle",
-                MaterialKey::Angle,
-                start,
-                (0.0, 1.25),
-            );
-            return;
-        }
-        RawMaterial::Fluid(m) => {
-            let preset = lift::fluid_preset(m);
-            let consistency = m.consistency.as_ref().map(|v| v.value.0);
-            add(
-                "consistency",
-                "consistency, the viscosity where the flow index is 1,",
-                MaterialKey::Consistency,
-                consistency.or(preset.map(|p| p.1.consistency)),
-                (0.0, 1e9),
-            );
-            let yield_stress = m.yield_stress.as_ref().map(|v| v.value.0);
-            add(
-                "yield_stress",
-                "yield stress",
-                MaterialKey::YieldStress,
-                yield_stress.or(preset.map(|p| p.2)).or(Some(0.0)),
-                (0.0, 1e9),
-            );
-            return;
-        }
-    };
-    let preset = preset.as_ref().map(|p| lift::preset_values(p.value));
-    let angle = |at: &Option<At<Angle>>, mu: Option<f64>| {
-        at.as_ref().map(|a| a.value.0).or(mu.map(f64::atan))
-    };
-    add(
-        "static_friction_angle",
-        "friction angle at vanishing shear rate, tan of it is mu_s,",
-        MaterialKey::StaticAngle,
-        angle(statically, preset.map(|(law, _)| law.mu_s)),
-        ANGLES,
-    );
-    add(
-        "dynamic_friction_angle",
-        "friction angle at large shear rate, tan of it is mu_2, not below the static one,",
-        MaterialKey::DynamicAngle,
-        angle(dynamically, preset.map(|(law, _)| law.mu_2)),
-        ANGLES,
-    );
-    let scale = scale.as_ref().map(|s| s.value.0);
-    add(
-        "inertial_number_scale",
-        "inertial number I0 at which friction is half way between its two values,",
-        MaterialKey::InertialScale,
-        scale.or(preset.map(|(law, _)| law.inertial_number_scale)),
-        (1e-3, 1e3),
-    );
-    let diameter = diameter.as_ref().map(|d| d.value.0);
-    add(
-        "grain_diameter",
-        "grain diameter",
-        MaterialKey::Diameter,
-        diameter.or(preset.map(|(_, grains)| grains.diameter)),
-        (1e-6, 1.0),
-    );
 }
 
 /// The range, wide enough for what the scene says.
@@ -292,7 +188,15 @@ fn apply(raw: &mut RawScene, target: Target, value: f64) {
             if let Some(entry) = entry(raw.materials.as_mut(), i) {
                 let place = entry.place.clone();
                 if let Some(material) = &mut entry.value {
-                    apply_material(material, &place, key, value);
+                    materials::apply(material, &place, key, value);
+                }
+            }
+        }
+        Target::Body(i, key) => {
+            if let Some(entry) = entry(raw.bodies.as_mut(), i) {
+                let place = entry.place.clone();
+                if let Some(body) = &mut entry.value {
+                    bodies::apply(body, &place, key, value);
                 }
             }
         }
@@ -322,39 +226,6 @@ fn apply(raw: &mut RawScene, target: Target, value: f64) {
     }
 }
 
-fn apply_material(material: &mut RawMaterial, place: &Place, key: MaterialKey, value: f64) {
-    macro_rules! apply_to {
-        ($raw:ident) => {
-            match key {
-                MaterialKey::StaticAngle => {
-                    $raw.static_friction_angle = at(place, "static_friction_angle", Angle(value));
-                }
-                MaterialKey::DynamicAngle => {
-                    $raw.dynamic_friction_angle = at(place, "dynamic_friction_angle", Angle(value));
-                }
-                MaterialKey::InertialScale => {
-                    $raw.inertial_number_scale = at(place, "inertial_number_scale", Ratio(value));
-                }
-                MaterialKey::Diameter => {
-                    $raw.grain_diameter = at(place, "grain_diameter", Length(value));
-                }
-                MaterialKey::Angle | MaterialKey::Consistency | MaterialKey::YieldStress => {}
-            }
-        };
-    }
-    match material {
-        RawMaterial::MuI(raw) => apply_to!(raw),
-        RawMaterial::BarkerGray(raw) => apply_to!(raw),
-        RawMaterial::ConstantFriction(raw) => {
-            raw.friction_angle = at(place, "friction_angle", Angle(value));
-        }
-        RawMaterial::Fluid(raw) if key == MaterialKey::Consistency => {
-            raw.consistency = at(place, "consistency", Viscosity(value));
-        }
-        RawMaterial::Fluid(raw) => raw.yield_stress = at(place, "yield_stress", Pressure(value)),
-    }
-}
-
 #[allow(clippy::unnecessary_wraps, reason = "what a key of a table is")]
 fn at<T>(table: &Place, key: &str, value: T) -> Option<At<T>> {
     Some(At {
@@ -380,7 +251,11 @@ mod tests {
     use crate::scene::{GaugeKind, Scene};
 
     fn scene() -> Scene {
-        parse("devices", include_str!("../../tests/scenes/devices.toml")).expect("it is a scene")
+        parse(
+            "devices",
+            include_str!("../../../tests/scenes/devices.toml"),
+        )
+        .expect("it is a scene")
     }
 
     fn with(scene: &Scene, changes: &[(&str, f64)]) -> Result<Scene, String> {
@@ -427,5 +302,90 @@ mod tests {
             ("material.beads.dynamic_friction_angle", 1.0),
         ];
         assert!(with(&scene, &both).is_ok());
+    }
+
+    fn dam() -> Scene {
+        let text = include_str!("../../../cases/silted_dam_reduced.toml");
+        parse("silted_dam_reduced", text).expect("it is a scene")
+    }
+
+    #[test]
+    fn levels_of_layers_move_together_or_not_at_all() {
+        let scene = dam();
+        let gap = with(&scene, &[("body.silt.upper_y", 0.24)]).expect_err("into the water");
+        assert!(gap.contains("overlaps"), "{gap}");
+        let both = [
+            ("body.silt.upper_y", 0.24),
+            ("body.reservoir.lower_y", 0.24),
+        ];
+        let deeper = with(&scene, &both).expect("a scene");
+        let (silt, water) = (
+            deeper.bodies[0].shape.bounds(),
+            deeper.bodies[1].shape.bounds(),
+        );
+        assert_eq!((silt.1[1], water.0[1]), (0.24, 0.24));
+        let bad = with(&scene, &[("body.silt.upper_y", -0.05)]).expect_err("below its foot");
+        assert!(bad.contains("upper"), "{bad}");
+        let rows = scene.adjustables.iter();
+        let top = rows.clone().find(|a| a.name == "body.silt.upper_y");
+        assert!(top.is_some_and(|a| a.description.contains("fill level")));
+    }
+
+    #[test]
+    fn shapes_without_corners_have_a_level() {
+        let text = include_str!("../../../tests/scenes/devices.toml");
+        let of = text.find("box = ").expect("its body is a box");
+        let line = text[of..].lines().next().expect("a line");
+        let round = "polygon = [[0, 0], [\"60 mm\", 0], [\"60 mm\", \"40 mm\"], [0, \"40 mm\"]]";
+        let scene = parse("polygon", &text.replace(line, round)).unwrap_or_else(|e| panic!("{e}"));
+        let row = scene
+            .adjustables
+            .iter()
+            .find(|a| a.name.ends_with(".level"));
+        let row = row.expect("a polygon can be filled less");
+        assert_eq!(row.start, 0.04);
+        let lower = with(&scene, &[(&row.name, 0.02)]).expect("a scene");
+        assert_eq!(lower.bodies[0].level, Some(0.02));
+        let over = with(&scene, &[(&row.name, 0.05)]).expect_err("higher than the shape");
+        assert!(over.contains("within the body's height"), "{over}");
+    }
+
+    #[test]
+    fn what_fluids_and_saturated_beds_flow_by_can_be_changed() {
+        let scene = dam();
+        let changes = [
+            ("material.silt.consistency", 2.5),
+            ("material.silt.flow_index", 0.8),
+            ("material.silt.cohesion", 20.0),
+            ("material.silt.density", 1900.0),
+            ("material.water.flow_index", 0.9),
+            ("material.water.yield_stress", 0.1),
+            ("material.water.consistency", 0.01),
+        ];
+        let changed = with(&scene, &changes).expect("a scene");
+        let (water, silt) = (
+            &changed.materials[0].material,
+            &changed.materials[1].material,
+        );
+        assert_eq!(
+            (silt.viscous.consistency, silt.viscous.flow_index),
+            (2.5, 0.8)
+        );
+        assert!((silt.rest_density() - 1900.0).abs() < 1e-9);
+        // c cos phi: the line of Mohr and Coulomb in plane strain.
+        assert!((silt.cohesion - 20.0 * 30_f64.to_radians().cos()).abs() < 1e-9);
+        assert_eq!(
+            (water.viscous.consistency, water.viscous.flow_index),
+            (0.01, 0.9)
+        );
+        let names: Vec<&str> = scene.adjustables.iter().map(|a| a.name.as_str()).collect();
+        assert!(names.contains(&"material.water.density"));
+        // Dry sand has no viscous stress to calibrate.
+        let dry = self::scene();
+        assert!(
+            dry.adjustables
+                .iter()
+                .all(|a| !a.name.ends_with("flow_index"))
+        );
     }
 }
