@@ -131,7 +131,7 @@ table! {
 choice! {
     /// How accurate, how fast.
     QualityWord {
-        /// for a first look: twice the spacing, courant 0.7, solver_tolerance 1e-2; about a tenth of the CPU time in the plane
+        /// for a first look: twice the spacing, courant 0.7; about a tenth of the CPU time in the plane
         "draft" => Draft,
         /// the spacing given, defaults
         "standard" => Standard,

@@ -15,7 +15,7 @@ fn at_opening(unit: &mut Unit, opening: f64, start_up: f64) -> f64 {
     let t = unit.component.time();
     unit.run_to(t + start_up);
     assert!((unit.get("gate.main.actual_opening") - opening).abs() < 1e-9);
-    discharge(unit, 0.2)
+    discharge(unit, 0.4)
 }
 
 /// One silo, three openings of its gate, and the fill from 80 % to 40 %.
