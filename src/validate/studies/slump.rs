@@ -30,7 +30,7 @@ const FEET: f64 = 0.02;
 
 /// Rows over the height, and the end [s].
 fn plan(effort: Effort) -> (u32, f64) {
-    effort.pick((20, 240.0), (10, 4.0))
+    effort.pick((20, 160.0), (10, 4.0))
 }
 
 fn x_inf() -> f64 {
