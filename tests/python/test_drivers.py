@@ -73,7 +73,8 @@ def test_fmi_library_has_no_complaint_about_any_case():
     done = subprocess.run([sys.executable, __file__, "load", *cases], capture_output=True, text=True)
     said = done.stdout + done.stderr
     assert done.returncode == 0, said
-    assert said.count("[FMI Library: FMI2XML] Parsing XML element ModelVariables") == len(cases), "its log was not caught"
+    # It reads each once or more.
+    assert said.count("[FMI Library: FMI2XML] Parsing XML element ModelVariables") >= len(cases), "its log was not caught"
     complaints = [line for line in said.splitlines() if re.search(r"\[(warning|error|fatal)\]", line)]
     assert [line for line in complaints if "Enumeration variable type not supported" not in line] == []
 
