@@ -8,6 +8,7 @@
 //! What `examples/bus_client.py` does, in Rust: requests are JSON on `@rpc/VERB`, gauges arrive as protobuf, whose types the
 //! library has in `sandgate::wire::messages`. A program of your own needs the crates `zenoh`, `serde_json`, `prost` and
 //! `sandgate`.
+#![allow(clippy::print_stdout, reason = "an example talks to whoever runs it")]
 
 use std::collections::BTreeMap;
 use std::error::Error;
