@@ -26,7 +26,7 @@ const NODES: [(f64, f64); 3] = [
 /// Parts of a side that a near element is cut into in space.
 const PARTS: i32 = 4;
 
-/// A flat piece of surface: in the plane a segment, in space a square with sides along [`tangents`].
+/// A flat piece of surface: in the plane a segment, in space a square with sides along `tangents`.
 #[derive(Clone, Copy, Debug)]
 pub struct Element<const D: usize> {
     /// Its centre, seen from the particle [m].
