@@ -446,7 +446,7 @@ impl Drop for SmallDisk {
 #[test]
 fn a_run_on_a_full_file_system_goes_on_to_its_end() {
     let folder = temp_dir::TempDir::new().unwrap();
-    let Some(disk) = SmallDisk::mount(folder.path(), "300k") else {
+    let Some(disk) = SmallDisk::mount(folder.path(), "160k") else {
         let warning = "\nNOT RUN: a run on a file system that is full, because this user may not mount a tmpfs (needs root)\n";
         std::io::stderr().write_all(warning.as_bytes()).unwrap();
         return;
