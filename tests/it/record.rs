@@ -7,7 +7,6 @@ use sandgate::scene::{self, InputTarget, Scene};
 use sandgate::wire::messages::{AppliedEvent, CommandKind};
 use sandgate::wire::{foxglove, messages, schema};
 use std::ffi::OsStr;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
