@@ -89,7 +89,7 @@ impl<const D: usize> Solver<D> {
         })
     }
 
-    /// Particles right before a wall lose the part of their velocity that goes into it, as AQUAgpusph's do. What is alone has a
+    /// Particles right before a wall lose the part of their velocity that goes into it. What is alone has a
     /// density so low that no pressure stops it. The wall gets their momentum.
     pub(super) fn bounce(&self, state: &mut State<D>) {
         let least = BOUNCE * self.numerics.spacing;
