@@ -1,5 +1,7 @@
 //! Cells of one list radius over the particles' own bounding box, with periodic axes; counting sort, fixed order.
 
+use std::ops::Range;
+
 use crate::math::Vector;
 
 /// Which axes repeat, and over what length.
@@ -43,6 +45,23 @@ impl<const D: usize> Periodic<D> {
                     x[k] = self.lower[k] + t.rem_euclid(l);
                 }
             }
+        }
+    }
+}
+
+/// Runs of points around a cell.
+#[derive(Debug)]
+pub(super) struct Near<const D: usize> {
+    cell: Option<[i64; D]>,
+    pub(super) runs: Vec<Range<u32>>,
+}
+
+impl<const D: usize> Near<D> {
+    /// Of no cell yet.
+    pub(super) fn new() -> Self {
+        Self {
+            cell: None,
+            runs: Vec::new(),
         }
     }
 }
@@ -144,10 +163,23 @@ impl<'a, const D: usize> Grid<'a, D> {
         n
     }
 
-    /// Calls `f` for every point in the cells around `x`, each once, in a fixed order.
+    /// Points of a run, in cell order.
     #[inline]
-    pub(super) fn for_near(&self, x: &Vector<D>, mut f: impl FnMut(u32)) {
+    pub(super) fn points(&self, run: &Range<u32>) -> &[u32] {
+        &self.order[run.start as usize..run.end as usize]
+    }
+
+    /// Runs of points in the cells around `x`, each point once, in a fixed order; `near` holds those of the last place.
+    #[inline]
+    pub(super) fn find_runs(&self, x: &Vector<D>, near: &mut Near<D>) {
         let here = self.cell(x);
+        if near.cell != Some(here) {
+            near.cell = Some(here);
+            self.cells_around(&here, &mut near.runs);
+        }
+    }
+
+    fn cells_around(&self, here: &[i64; D], runs: &mut Vec<Range<u32>>) {
         // Per axis the cells to visit; short periodic axes name each cell once.
         let mut axes = [[0i64; 3]; D];
         let mut lengths = [0usize; D];
@@ -167,6 +199,7 @@ impl<'a, const D: usize> Grid<'a, D> {
                 lengths[k] += 1;
             }
         }
+        runs.clear();
         let outer: usize = lengths[1..].iter().product();
         for m in 0..outer {
             let mut rest = m;
@@ -178,8 +211,11 @@ impl<'a, const D: usize> Grid<'a, D> {
             for &first in &axes[0][..lengths[0]] {
                 c[0] = first;
                 let cell = self.index(&c);
-                for &j in &self.order[self.start[cell] as usize..self.start[cell + 1] as usize] {
-                    f(j);
+                let (start, end) = (self.start[cell], self.start[cell + 1]);
+                // Cells along the first axis follow each other.
+                match runs.last_mut() {
+                    Some(last) if last.end == start => last.end = end,
+                    _ => runs.push(start..end),
                 }
             }
         }

@@ -5,10 +5,10 @@
 //! motion for particles among themselves (a uniform speed costs nothing) and to walls for wall lists.
 
 use crate::boundary::WallPoints;
-use crate::math::{CHUNK, Vector, Workers, norm, sub};
+use crate::math::{CHUNK, Vector, Workers, dot, norm, sub};
 use crate::state::Grains;
 
-use super::grid::{Grid, Periodic};
+use super::grid::{Grid, Near, Periodic};
 use super::pair::Block;
 
 /// Neighbour lists of one state.
@@ -89,19 +89,23 @@ impl<const D: usize> Lists<D> {
         let mut rows = vec![(); n];
         workers.blocks(&mut self.blocks, &mut rows, |block, first, part| {
             block.clear();
+            let (mut near, mut near_walls) = (Near::new(), Near::new());
             for i in first..first + part.len() {
-                grid.for_near(&x[i], |j| {
-                    let d = periodic.difference(&x[i], &x[j as usize]);
-                    if j as usize != i && crate::math::dot(&d, &d) < reach2 {
-                        block.add_neighbour(j);
-                    }
-                });
-                wall_grid.for_near(&x[i], |g| {
-                    let d = periodic.difference(&x[i], &walls.position[g as usize]);
-                    if crate::math::dot(&d, &d) < reach2 {
-                        block.add_wall(g);
-                    }
-                });
+                grid.find_runs(&x[i], &mut near);
+                for run in &near.runs {
+                    let points = grid.points(run);
+                    block.add_neighbours(points.len(), |list| {
+                        keep_near(list, points, (i as u32, &x[i]), x, periodic, reach2)
+                    });
+                }
+                wall_grid.find_runs(&x[i], &mut near_walls);
+                for run in &near_walls.runs {
+                    let points = wall_grid.points(run);
+                    let none = (u32::MAX, &x[i]);
+                    block.add_walls(points.len(), |list| {
+                        keep_near(list, points, none, &walls.position, periodic, reach2)
+                    });
+                }
                 block.end_row(i as u32);
             }
         });
@@ -151,6 +155,26 @@ impl<const D: usize> Lists<D> {
             self.pieces.push(Some(number[r]));
         }
     }
+}
+
+/// Writes those of `run` that are nearer than sqrt(`reach2`) to the front of `list`, without `own`; returns their number.
+#[inline]
+fn keep_near<const D: usize>(
+    list: &mut [u32],
+    run: &[u32],
+    (own, here): (u32, &Vector<D>),
+    points: &[Vector<D>],
+    periodic: &Periodic<D>,
+    reach2: f64,
+) -> usize {
+    let mut count = 0;
+    for &j in run {
+        let d = periodic.difference(here, &points[j as usize]);
+        // Written always, counted if near: no branch that nothing predicts.
+        list[count] = j;
+        count += usize::from(j != own && dot(&d, &d) < reach2);
+    }
+    count
 }
 
 /// Mean of rows, for frames of reference.

@@ -57,6 +57,14 @@ pub(super) struct Block<const D: usize> {
     pub(super) contacts: Vec<Contact<D>>,
 }
 
+#[inline]
+fn append(list: &mut Vec<u32>, most: usize, write: impl FnOnce(&mut [u32]) -> usize) {
+    let start = list.len();
+    list.resize(start + most, 0);
+    let count = write(&mut list[start..]);
+    list.truncate(start + count);
+}
+
 impl<const D: usize> Block<D> {
     pub(super) fn clear(&mut self) {
         self.neighbours.clear();
@@ -65,12 +73,16 @@ impl<const D: usize> Block<D> {
         self.near.clear();
     }
 
-    pub(super) fn add_neighbour(&mut self, j: u32) {
-        self.neighbours.push(j);
+    /// Adds to the row in hand those of `most` neighbours that `write` puts in front and counts.
+    #[inline]
+    pub(super) fn add_neighbours(&mut self, most: usize, write: impl FnOnce(&mut [u32]) -> usize) {
+        append(&mut self.neighbours, most, write);
     }
 
-    pub(super) fn add_wall(&mut self, w: u32) {
-        self.walls.push(w);
+    /// As `add_neighbours`, for wall points.
+    #[inline]
+    pub(super) fn add_walls(&mut self, most: usize, write: impl FnOnce(&mut [u32]) -> usize) {
+        append(&mut self.walls, most, write);
     }
 
     /// Ends the row of particle i: filled up with itself to whole groups.
