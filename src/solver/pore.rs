@@ -8,7 +8,7 @@
 //! Symbols: k_ij = 2 V_i V_j |F|; sum_j k_ij (p_i - p_j - rho_w g.x_ij) = 0, x_ij = x_i - x_j; Dirichlet rows: p_j of fluids.
 
 use crate::kernel::WendlandC2;
-use crate::math::{Vector, dot, norm};
+use crate::math::{Four, LANES, Lanes, Quad, Vector, dot, in_lanes, norm};
 use crate::state::State;
 
 use super::Solver;
@@ -32,6 +32,8 @@ pub(super) struct Work {
     residual: Vec<f64>,
     direction: Vec<f64>,
     product: Vec<f64>,
+    /// What rows look up of a neighbour.
+    near: Vec<Quad>,
 }
 
 /// sum_j 2 V_j |F| inside a square lattice of particles `spacing` apart [1/m^2].
@@ -64,6 +66,13 @@ struct Row {
     known: f64,
 }
 
+/// Four neighbours of a row: what was looked up of them, k = 2 V_j |F| [1/m^2] and g.grad W_ij V_j [1/s^2].
+struct Near<L: Lanes> {
+    of: [Four<L>; LANES],
+    k: Four<L>,
+    down: Four<L>,
+}
+
 impl<const D: usize> Solver<D> {
     /// Finds the pore pressure of the state's positions and densities, from the last one.
     pub(super) fn seep(&mut self, state: &mut State<D>) {
@@ -83,7 +92,7 @@ impl<const D: usize> Solver<D> {
         }
         let mut pore = std::mem::take(&mut state.grains.pore_pressure);
         let limit2 = self.start_seepage(state, &pore, &mut work);
-        self.iterate(state, &mut pore, &mut work, limit2);
+        self.iterate(&mut pore, &mut work, limit2);
         state.grains.pore_pressure = pore;
         self.pore = work;
     }
@@ -103,50 +112,95 @@ impl<const D: usize> Solver<D> {
                 self.pressure[i]
             };
         });
+        let mut near = std::mem::take(&mut self.pore.near);
+        near.resize(grains.len(), Quad::default());
+        self.workers.each(&mut near, |i, of| {
+            let porous = f64::from(u8::from(self.is_porous(state, i)));
+            *of = Quad([porous, porous * own[i], 0.0, 0.0]);
+        });
         let mut effective = std::mem::take(&mut self.effective);
         effective.resize(grains.len(), 0.0);
         self.workers
             .blocks_read(&self.lists.blocks, &mut effective, |block, first, out| {
-                for (row, p) in out.iter_mut().enumerate() {
-                    let i = first + row;
-                    *p = if self.is_porous(state, i) {
-                        self.smoothed(state, &own, block, row, i).max(0.0)
-                    } else {
-                        own[i]
-                    };
-                }
+                in_lanes!(
+                    self.arch,
+                    |lanes| for (row, p) in out.iter_mut().enumerate() {
+                        let i = first + row;
+                        *p = if self.is_porous(state, i) {
+                            let own = (i, own[i]);
+                            self.smoothed(lanes, state, &near, own, block, row).max(0.0)
+                        } else {
+                            own[i]
+                        };
+                    }
+                );
             });
         self.effective = effective;
+        self.pore.near = near;
         self.pore.residual = own;
+    }
+
+    /// Calls `visit` for the neighbours of a row, four at a time. Only before the coefficients are multiplied by viscosity.
+    #[inline(always)]
+    fn for_each_four<L: Lanes>(
+        &self,
+        lanes: L,
+        near: &[Quad],
+        block: &Block<D>,
+        row: usize,
+        mut visit: impl FnMut(Near<L>),
+    ) {
+        let over = Four::splat(lanes, 1.0 / (D as f64 + 2.0));
+        let range = block.groups(row);
+        let (j, g) = (&block.j[range.clone()], &block.g[range.clone()]);
+        for ((j, g), c) in j.iter().zip(g).zip(&block.c[range]) {
+            let of = Four::transpose(
+                lanes,
+                [
+                    &near[j[0] as usize],
+                    &near[j[1] as usize],
+                    &near[j[2] as usize],
+                    &near[j[3] as usize],
+                ],
+            );
+            let zero = Four::splat(lanes, 0.0);
+            let (mut g2, mut down) = (zero, zero);
+            for a in 0..D {
+                let g_a = Four::load(lanes, &g[a]);
+                g2 += g_a * g_a;
+                down += Four::splat(lanes, self.gravity[a]) * g_a;
+            }
+            let k = over * g2 * Four::load(lanes, c);
+            visit(Near { of, k, down });
+        }
     }
 
     /// Mean of the effective pressures of a particle and its saturated neighbours, each carried to the particle's place with
     /// the buoyant weight: the packing's own forces, which a bed at rest holds, are no friction.
-    fn smoothed(
+    #[inline(always)]
+    fn smoothed<L: Lanes>(
         &self,
+        lanes: L,
         state: &State<D>,
-        own: &[f64],
+        near: &[Quad],
+        (i, own): (usize, f64),
         block: &Block<D>,
         row: usize,
-        i: usize,
     ) -> f64 {
         let grains = &self.materials[state.grains.phase[i] as usize].grains;
         let buoyant = grains.rest_density() - grains.pore_density;
-        // The particle's own cell counts as |F| at r = 0 does.
-        let own_weight = 2.0 * self.volume[i] * self.kernel.f(0.0).abs();
-        let (mut sum, mut weights) = (own_weight * own[i], own_weight);
-        block.for_each_pair(row, |j, k, g| {
-            if self.is_porous(state, j as usize) {
-                let mut down = 0.0;
-                for a in 0..D {
-                    down += self.gravity[a] * g[a];
-                }
-                // k x_ij = -2 g_ij.
-                sum += k * own[j as usize] - 2.0 * buoyant * down;
-                weights += k;
-            }
+        let zero = Four::splat(lanes, 0.0);
+        let (mut sum, mut weights, mut fall) = (zero, zero, zero);
+        self.for_each_four(lanes, near, block, row, |four| {
+            let [porous, pressure, ..] = four.of;
+            sum += four.k * pressure;
+            weights += four.k * porous;
+            fall += four.down * porous;
         });
-        sum / weights
+        // The particle's own cell counts as |F| at r = 0 does; k x_ij = -2 g_ij.
+        let own_weight = 2.0 * self.volume[i] * self.kernel.f(0.0).abs();
+        let sum = own_weight * own + sum.sum() - 2.0 * buoyant * fall.sum();
+        sum / (own_weight + weights.sum())
     }
 
     /// Pressure that presses grain on grain, or on a wall: that of the particle but for pores and fluids [Pa].
@@ -166,16 +220,34 @@ impl<const D: usize> Solver<D> {
     /// Diagonal and first residual; returns the square of what the residual may be.
     fn start_seepage(&self, state: &State<D>, pore: &[f64], work: &mut Work) -> f64 {
         let Work {
-            diagonal, residual, ..
+            diagonal,
+            residual,
+            near,
+            ..
         } = work;
+        near.resize(diagonal.len(), Quad::default());
+        self.workers.each(near, |j, of| {
+            let material = &self.materials[state.grains.phase[j] as usize];
+            *of = if material.is_fluid() {
+                Quad([1.0, self.pressure[j], 0.0, 0.0])
+            } else if material.is_saturated() {
+                Quad([1.0, 0.0, pore[j], 0.0])
+            } else {
+                Quad::default()
+            };
+        });
+        let near = &*near;
         let mut rows = vec![Row::default(); diagonal.len()];
         self.workers
             .blocks_read(&self.lists.blocks, &mut rows, |block, first, out| {
-                for (row, o) in out.iter_mut().enumerate() {
-                    if self.is_porous(state, first + row) {
-                        *o = self.seepage_row(state, pore, block, row, first + row);
+                in_lanes!(
+                    self.arch,
+                    |lanes| for (row, o) in out.iter_mut().enumerate() {
+                        if self.is_porous(state, first + row) {
+                            *o = self.seepage_row(lanes, state, near, block, row, first + row);
+                        }
                     }
-                }
+                );
             });
         for (i, row) in rows.iter().enumerate() {
             diagonal[i] = row.diagonal;
@@ -193,40 +265,36 @@ impl<const D: usize> Solver<D> {
         limit2.max(1e-24 * given2)
     }
 
-    /// Sums of row i with pore pressures `pore`.
-    fn seepage_row(
+    /// Sums of row i.
+    #[inline(always)]
+    fn seepage_row<L: Lanes>(
         &self,
+        lanes: L,
         state: &State<D>,
-        pore: &[f64],
+        near: &[Quad],
         block: &Block<D>,
         row: usize,
         i: usize,
     ) -> Row {
-        let grains = &state.grains;
-        let rho_w = self.materials[grains.phase[i] as usize].grains.pore_density;
+        let rho_w = self.materials[state.grains.phase[i] as usize]
+            .grains
+            .pore_density;
         let volume = self.volume[i];
-        let mut sums = Row::default();
-        block.for_each_pair(row, |j, k, g| {
-            let j = j as usize;
-            let material = &self.materials[grains.phase[j] as usize];
-            let is_fluid = material.is_fluid();
-            if !is_fluid && !material.is_saturated() {
-                return;
-            }
-            let mut down = 0.0;
-            for a in 0..D {
-                down += self.gravity[a] * g[a];
-            }
-            let k = volume * k;
-            sums.diagonal += k;
-            // k_ij x_ij = -2 V_i g_ij.
-            sums.given -= 2.0 * volume * rho_w * down;
-            if is_fluid {
-                sums.given += k * self.pressure[j];
-            } else {
-                sums.known += k * pore[j];
-            }
+        let zero = Four::splat(lanes, 0.0);
+        let (mut diagonal, mut fluid, mut known, mut fall) = (zero, zero, zero, zero);
+        self.for_each_four(lanes, near, block, row, |four| {
+            let [wet, pressure, pore, _] = four.of;
+            diagonal += four.k * wet;
+            fluid += four.k * pressure;
+            known += four.k * pore;
+            fall += four.down * wet;
         });
+        // k_ij x_ij = -2 V_i g_ij.
+        let mut sums = Row {
+            diagonal: volume * diagonal.sum(),
+            given: volume * (fluid.sum() - 2.0 * rho_w * fall.sum()),
+            known: volume * known.sum(),
+        };
         if sums.diagonal > 0.0 && sums.diagonal < SURFACE * volume * self.lattice_sum {
             self.join_air(state, rho_w, &mut sums, (block, row, i));
         }
@@ -276,13 +344,32 @@ impl<const D: usize> Solver<D> {
         }
     }
 
+    /// sum_j 2 V_j |F| d_j: d is 0 for what has no pores.
+    #[inline(always)]
+    fn weighted_sum<L: Lanes>(&self, lanes: L, d: &[f64], block: &Block<D>, row: usize) -> f64 {
+        let mut sum = Four::splat(lanes, 0.0);
+        let range = block.groups(row);
+        let (j, g) = (&block.j[range.clone()], &block.g[range.clone()]);
+        for ((j, g), c) in j.iter().zip(g).zip(&block.c[range]) {
+            let mut g2 = Four::splat(lanes, 0.0);
+            for g in g {
+                let g = Four::load(lanes, g);
+                g2 += g * g;
+            }
+            let other = Four::gather(lanes, |m| d[j[m] as usize]);
+            sum += g2 * Four::load(lanes, c) * other;
+        }
+        sum.sum() / (D as f64 + 2.0)
+    }
+
     /// Conjugate gradients with the diagonal.
-    fn iterate(&self, state: &State<D>, pore: &mut [f64], work: &mut Work, limit2: f64) {
+    fn iterate(&self, pore: &mut [f64], work: &mut Work, limit2: f64) {
         let Work {
             diagonal,
             residual,
             direction,
             product,
+            ..
         } = work;
         let n = pore.len();
         let over = |i: usize, r: f64| {
@@ -307,21 +394,18 @@ impl<const D: usize> Solver<D> {
                 self.workers
                     .blocks_sum(&self.lists.blocks, product, |block, first, out| {
                         let mut sum = 0.0;
-                        for (row, o) in out.iter_mut().enumerate() {
-                            let i = first + row;
-                            *o = 0.0;
-                            if diagonal[i] > 0.0 {
-                                let mut q = diagonal[i] * d[i];
-                                let volume = self.volume[i];
-                                block.for_each_pair(row, |j, k, _| {
-                                    if self.is_porous(state, j as usize) {
-                                        q -= volume * k * d[j as usize];
-                                    }
-                                });
-                                *o = q;
-                                sum += d[i] * q;
+                        in_lanes!(
+                            self.arch,
+                            |lanes| for (row, o) in out.iter_mut().enumerate() {
+                                let i = first + row;
+                                *o = 0.0;
+                                if diagonal[i] > 0.0 {
+                                    let others = self.weighted_sum(lanes, d, block, row);
+                                    *o = diagonal[i] * d[i] - self.volume[i] * others;
+                                    sum += d[i] * *o;
+                                }
                             }
-                        }
+                        );
                         sum
                     });
             if curvature.is_nan() || curvature <= 0.0 {
