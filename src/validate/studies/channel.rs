@@ -7,6 +7,8 @@ use crate::validate::{
     Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study, Table,
 };
 
+use super::yield_profile::Layer;
+
 /// The study.
 pub(super) const STUDY: Study = Study {
     name: "channel",
@@ -86,19 +88,14 @@ fn rows(effort: Effort) -> [u32; 3] {
 }
 
 impl Flow {
-    fn plug(&self) -> f64 {
-        self.yield_stress / self.force
-    }
-
-    /// Exact velocity at a distance y from the middle [m/s].
-    fn exact(&self, y: f64) -> f64 {
-        let n = self.index;
-        let sheared = HALF_WIDTH - self.plug();
-        let most = n / (n + 1.0)
-            * (self.force / self.consistency).powf(1.0 / n)
-            * sheared.powf(1.0 + 1.0 / n);
-        let s = ((y - self.plug()) / sheared).max(0.0);
-        most * (1.0 - s.powf(1.0 + 1.0 / n))
+    fn layer(&self) -> Layer {
+        Layer {
+            consistency: self.consistency,
+            index: self.index,
+            yield_stress: self.yield_stress,
+            force: self.force,
+            thickness: HALF_WIDTH,
+        }
     }
 
     fn member(&self, rows: u32) -> Result<Member, String> {
@@ -130,25 +127,6 @@ impl Flow {
             times.collect(),
         ))
     }
-
-    /// L2 of the velocity and spread of the plug's, over the exact plug speed.
-    fn errors(&self, recording: &Recording) -> Option<(f64, f64)> {
-        let (mut error, mut size, mut plug) = (0.0, 0.0, Vec::new());
-        let fastest = self.exact(0.0);
-        for (y, u) in profile(recording) {
-            let exact = self.exact(y.abs());
-            error += (u - exact).powi(2);
-            size += exact * exact;
-            // Two spacings inside, where the kernel sees plug alone.
-            if y.abs() < 0.8 * self.plug() {
-                plug.push(u / fastest);
-            }
-        }
-        let mean = crate::validate::statistics::mean(&plug).unwrap_or(0.0);
-        let squares: f64 = plug.iter().map(|u| (u - mean).powi(2)).sum();
-        let spread = (squares / plug.len().max(1) as f64).sqrt();
-        (size > 0.0).then(|| ((error / size).sqrt(), spread))
-    }
 }
 
 /// Distance from the middle and velocity of every particle of every snapshot.
@@ -179,7 +157,10 @@ fn analyse(results: &Results) -> Result<Report, String> {
     for flow in &FLOWS {
         let found = counts.map(|n| {
             let recording = results.finished(&format!("{}_{n}", flow.name));
-            recording.and_then(|r| flow.errors(r))
+            recording.and_then(|r| {
+                let rows = profile(r).map(|(y, u)| (y.abs(), u));
+                flow.layer().errors(rows)
+            })
         });
         for (n, errors) in counts.iter().zip(found) {
             if let Some((l2, spread)) = errors {
@@ -228,10 +209,11 @@ fn analyse(results: &Results) -> Result<Report, String> {
 fn figure(results: &Results, rows: u32) -> Result<Figure, String> {
     let mut curves = Vec::new();
     for (k, flow) in FLOWS.iter().enumerate() {
-        let fastest = flow.exact(0.0);
+        let layer = flow.layer();
+        let fastest = layer.velocity(0.0);
         let exact = (0..=100).map(|i| {
             let y = HALF_WIDTH * (f64::from(i) / 50.0 - 1.0);
-            (1e3 * y, flow.exact(y.abs()) / fastest)
+            (1e3 * y, layer.velocity(y.abs()) / fastest)
         });
         curves.push(Curve::new(
             format!("{}, exact", flow.name),

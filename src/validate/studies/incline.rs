@@ -181,7 +181,8 @@ impl Run {
         let spacing = DEPTH / f64::from(rows);
         let period = COLUMNS * spacing;
         let mut template = Template::new(TEMPLATE)?
-            .with("domain.upper", point(period, 1.5 * DEPTH))
+            // Fast layers throw grains up.
+            .with("domain.upper", point(period, 5.0 * DEPTH))
             .with("domain.slope", self.slope.to_radians())
             .with("numerics.spacing", spacing)
             .with("numerics.smoothing_ratio", self.smoothing)

@@ -5,17 +5,21 @@ mod columns;
 mod contact;
 mod controls;
 mod dam_breaks;
+mod film;
 mod incline;
 mod janssen;
 mod rest;
 mod silo;
 mod silted_dams;
 mod slump;
+mod surge;
+mod two_layers;
+mod yield_profile;
 
 use super::Study;
 
 /// All studies, in the order in which they are listed and run.
-pub const ALL: [Study; 14] = [
+pub const ALL: [Study; 17] = [
     incline::STUDY,
     columns::STUDY,
     columns::axisymmetric::STUDY,
@@ -27,8 +31,11 @@ pub const ALL: [Study; 14] = [
     silo::cohesion::STUDY,
     controls::STUDY,
     channel::STUDY,
+    film::STUDY,
+    surge::STUDY,
     dam_breaks::STUDY,
     slump::STUDY,
+    two_layers::STUDY,
     silted_dams::STUDY,
 ];
 

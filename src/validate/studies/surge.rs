@@ -1,0 +1,169 @@
+//! `surge`: fronts of collapsing columns of water against two laboratories' measurements.
+
+use crate::validate::chart::{Chart, Curve, Look};
+use crate::validate::statistics::interpolate;
+use crate::validate::template::{Template, rectangle};
+use crate::validate::{Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study};
+
+/// The study.
+pub(super) const STUDY: Study = Study {
+    name: "surge",
+    title: "Surge fronts of collapsing columns of water",
+    about: "Columns of water 1 m long and 2 m or 1 m high, let go at once over a dry, smooth floor without friction. Fronts against the \
+experiments of Koshizuka and Oka (1996, doi 10.13182/NSE96-A24205; 2 m, brought to this size by Froude's law) and of Martin and Moyce \
+(1952, doi 10.1098/rsta.1952.0006; the square column: a = 1 m, Z = x/a at T = t sqrt(g/a)). In the laboratory a diaphragm or gate goes \
+first and floors are rough, so that measured fronts start later; times are compared as published.",
+    members,
+    analyse,
+};
+
+const TEMPLATE: &str = include_str!("../../../cases/validation/surge.toml");
+const FRONT: &str = "gauge.front.front";
+const STEP: f64 = 5e-3;
+
+/// A column and its measured front.
+struct Column {
+    name: &'static str,
+    source: &'static str,
+    /// [m]
+    height: f64,
+    /// End [s].
+    until: f64,
+    /// Time and front; the time in units of `unit` seconds.
+    measured: &'static [(f64, f64)],
+    unit: f64,
+}
+
+const COLUMNS: [Column; 2] = [
+    Column {
+        name: "tall",
+        source: "Koshizuka and Oka (1996)",
+        height: 2.0,
+        until: 0.76,
+        measured: &[
+            (0.0920, 1.128),
+            (0.1907, 1.244),
+            (0.2663, 1.464),
+            (0.3221, 1.695),
+            (0.3681, 1.903),
+            (0.4140, 2.123),
+            (0.4466, 2.365),
+            (0.4958, 2.584),
+            (0.5219, 2.804),
+            (0.5646, 3.034),
+            (0.5940, 3.219),
+            (0.6366, 3.462),
+            (0.6693, 3.704),
+            (0.7021, 3.900),
+            (0.7513, 4.132),
+        ],
+        unit: 1.0,
+    },
+    Column {
+        name: "square",
+        source: "Martin and Moyce (1952)",
+        height: 1.0,
+        until: 0.65,
+        measured: &[
+            (0.430, 1.108),
+            (0.614, 1.218),
+            (0.796, 1.437),
+            (0.970, 1.671),
+            (1.137, 1.893),
+            (1.292, 2.109),
+            (1.442, 2.334),
+            (1.621, 2.564),
+            (1.757, 2.787),
+            (1.929, 3.001),
+        ],
+        // sqrt(a/g), a = 1 m.
+        unit: 0.319_275_4,
+    },
+];
+
+/// Particles along the column.
+fn rows(effort: Effort) -> [u32; 2] {
+    effort.pick([25, 50], [8, 12])
+}
+
+fn members(effort: Effort) -> Result<Vec<Member>, String> {
+    let each = COLUMNS.iter().flat_map(|column| {
+        rows(effort).map(|rows| {
+            let text = Template::new(TEMPLATE)?
+                .with("numerics.spacing", 1.0 / f64::from(rows))
+                .with(
+                    "bodies.column.box",
+                    rectangle([0.0, 0.0], [1.0, column.height]),
+                )
+                .with("run.step", STEP)
+                .with("run.until", column.until)
+                .text()?;
+            let name = format!("{}_{rows}", column.name);
+            Ok(Member::new(name, text, &[FRONT], Vec::new()))
+        })
+    });
+    each.collect()
+}
+
+/// Time [s] and front [m] at every communication point.
+fn history(recording: &Recording) -> Option<Vec<(f64, f64)>> {
+    let fronts = recording.series.get(FRONT)?.iter().enumerate();
+    fronts
+        .map(|(k, front)| Some((STEP * k as f64, *front.first()?)))
+        .collect()
+}
+
+fn analyse(results: &Results) -> Result<Report, String> {
+    let mut report = Report::default();
+    for column in &COLUMNS {
+        let measured: Vec<(f64, f64)> = column
+            .measured
+            .iter()
+            .map(|(t, x)| (t * column.unit, *x))
+            .collect();
+        let mut curves = vec![Curve::new(column.source, measured.clone(), Look::Dots, 6)];
+        for (k, rows) in rows(results.effort).into_iter().enumerate() {
+            let found = results
+                .finished(&format!("{}_{rows}", column.name))
+                .and_then(history);
+            // The larger of the two signs, with its sign.
+            let worst = found.as_ref().and_then(|found| {
+                let errors = measured
+                    .iter()
+                    .map(|(t, x)| Some(interpolate(found, *t)? / x - 1.0));
+                let errors: Vec<f64> = errors.collect::<Option<_>>()?;
+                errors
+                    .into_iter()
+                    .max_by(|a, b| a.abs().total_cmp(&b.abs()))
+            });
+            report.metrics.push(Metric::new(
+                format!(
+                    "{} column, {rows} particles along it: largest error of the front at a measured time",
+                    column.name
+                ),
+                worst,
+                Rule::Between(-0.05, 0.05),
+                column.source,
+            ));
+            if let Some(found) = found {
+                curves.push(Curve::new(
+                    format!("{rows} particles"),
+                    found,
+                    Look::Line,
+                    k,
+                ));
+            }
+        }
+        report.figures.push(Figure {
+            name: column.name.to_owned(),
+            caption: format!("Front of the column {} m high", column.height),
+            svg: Chart {
+                x: "time [s]".to_owned(),
+                y: "front [m]".to_owned(),
+                curves,
+            }
+            .svg()?,
+        });
+    }
+    Ok(report)
+}
