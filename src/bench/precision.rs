@@ -42,11 +42,12 @@ impl Setting {
 }
 
 /// Choices tried beside the defaults at one resolution.
-const CHANGES: [(&str, &str); 15] = [
+const CHANGES: [(&str, &str); 16] = [
     ("smoothing_ratio", "1.3"),
     ("smoothing_ratio", "2.0"),
     ("courant", "0.25"),
-    ("courant", "0.7"),
+    ("courant", "0.5"),
+    ("courant", "0.9"),
     ("solver_tolerance", "1e-2"),
     ("solver_tolerance", "1e-6"),
     ("yield_iterations", "3"),

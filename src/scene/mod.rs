@@ -19,7 +19,7 @@ mod types;
 pub use adjust::Adjustable;
 pub use build::{build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
-pub use quality::{Picked, Quality};
+pub use quality::Quality;
 pub use reference::{reference_markdown, schema};
 pub use types::*;
 

@@ -1,9 +1,9 @@
-//! What `numerics.quality` stands for: resolution and tolerances taken together, as the work-precision studies found them
+//! What `numerics.quality` stands for: a resolution, which is what the work-precision studies found worth its time
 //! (docs/precision.md, "What the quality knob picks").
 
-use super::raw::{QualityWord, Ratio, RawScene};
+use super::raw::{QualityWord, RawScene};
 
-/// A choice of resolution and tolerances.
+/// A choice of resolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quality {
     /// For a first look.
@@ -12,17 +12,6 @@ pub enum Quality {
     Standard,
     /// For numbers that count.
     Fine,
-}
-
-/// What a quality sets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Picked {
-    /// Particles per length over those of the scene's spacing [1].
-    pub resolution: f64,
-    /// Courant number, if the scene does not give one [1]; `None`: the default.
-    pub courant: Option<f64>,
-    /// Relative tolerance of the viscous solve, if the scene does not give one [1]; `None`: the default.
-    pub solver_tolerance: Option<f64>,
 }
 
 impl Quality {
@@ -39,19 +28,14 @@ impl Quality {
         }
     }
 
-    /// What it sets. A longer step lies on the front of most studies and costs little accuracy; a shorter one costs more than
-    /// it gives, so `fine` spends all on resolution. A looser solve is as cheap but makes slow slopes run away.
+    /// Particles per length over those of the scene's spacing [1]. Steps and tolerances stay: the defaults' lie on the front
+    /// of most studies, a looser solve makes slow slopes run away, and shorter steps cost more than they give.
     #[must_use]
-    pub fn picked(self) -> Picked {
-        let (resolution, courant, solver_tolerance) = match self {
-            Quality::Draft => (0.5, Some(0.7), None),
-            Quality::Standard => (1.0, None, None),
-            Quality::Fine => (1.5, None, None),
-        };
-        Picked {
-            resolution,
-            courant,
-            solver_tolerance,
+    pub fn resolution(self) -> f64 {
+        match self {
+            Quality::Draft => 0.5,
+            Quality::Standard => 1.0,
+            Quality::Fine => 1.5,
         }
     }
 
@@ -90,7 +74,7 @@ impl Quality {
     }
 }
 
-/// Puts what a scene's quality sets in place of what it leaves open; its spacing is that of `standard`.
+/// Puts the spacing of a scene's quality in place of the one it gives, which is that of `standard`.
 pub(super) fn apply(raw: &mut RawScene) {
     let Some(numerics) = raw.numerics.as_mut().map(|n| &mut n.value) else {
         return;
@@ -98,24 +82,11 @@ pub(super) fn apply(raw: &mut RawScene) {
     let Some(quality) = numerics.quality.as_ref() else {
         return;
     };
-    let picked = Quality::of_word(quality.value).picked();
+    let resolution = Quality::of_word(quality.value).resolution();
     if let Some(spacing) = numerics.spacing.as_mut()
-        && picked.resolution != 1.0
+        && resolution != 1.0
     {
-        spacing.value.0 /= picked.resolution;
-    }
-    let given = &numerics.given;
-    for (key, value, field) in [
-        ("courant", picked.courant, &mut numerics.courant),
-        (
-            "solver_tolerance",
-            picked.solver_tolerance,
-            &mut numerics.solver_tolerance,
-        ),
-    ] {
-        if let (Some(value), Some(field), false) = (value, field.as_mut(), given.contains(&key)) {
-            field.value = Ratio(value);
-        }
+        spacing.value.0 /= resolution;
     }
 }
 
@@ -132,22 +103,15 @@ mod tests {
     }
 
     #[test]
-    fn a_quality_sets_what_a_scene_leaves_open() {
+    fn a_quality_is_a_resolution() {
         let standard = scene("");
         assert_eq!(scene("quality = \"standard\"").numerics, standard.numerics);
         let draft = scene("quality = \"draft\"");
         assert_eq!(draft.quality, Quality::Draft);
         assert_eq!(draft.numerics.spacing, 2.0 * standard.numerics.spacing);
-        assert_eq!(draft.numerics.courant, 0.7);
-        let own = scene("quality = \"draft\"\ncourant = 0.3");
-        assert_eq!(own.numerics.courant, 0.3);
-        assert_eq!(
-            own.numerics.solver_tolerance,
-            standard.numerics.solver_tolerance
-        );
+        assert_eq!(draft.numerics.courant, standard.numerics.courant);
         let fine = scene("quality = \"fine\"");
         assert_eq!(fine.numerics.spacing, standard.numerics.spacing / 1.5);
-        assert_eq!(fine.numerics.courant, standard.numerics.courant);
     }
 
     #[test]

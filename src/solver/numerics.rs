@@ -38,7 +38,7 @@ pub struct Numerics {
     /// seed of this table, and none of the others; `PaperB` spacing, smoothing ratio, sound speed, Courant number, density
     /// diffusion, shifting, jitter and seed.
     pub scheme: Scheme,
-    /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.5.
+    /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.7, 0.5 of the reference schemes.
     pub courant: f64,
     /// Exact yield or plain cap.
     pub yield_form: YieldForm,

@@ -74,21 +74,16 @@ fn summary(run: &PrecisionRun) -> String {
 /// What each quality comes to in each study.
 fn qualities(run: &PrecisionRun) -> String {
     let mut text = "\n## What the quality knob picks\n\n`quality = \"draft\" | \"standard\" | \"fine\"` in `[numerics]`, or the parameter \
-         `solver.quality` (0, 1, 2) of a component, sets together what a scene leaves open:\n\n| quality | resolution | courant | solver_tolerance |\n|---|---|---|---|\n"
+         `solver.quality` (0, 1, 2) of a component, is a resolution: steps, tolerances and all else stay what they are.\n\n| quality | resolution |\n|---|---|\n"
         .to_owned();
     for quality in Quality::ALL {
-        let picked = quality.picked();
-        let cell = |v: Option<f64>| v.map_or("default".to_owned(), number);
         text.push_str(&format!(
-            "| {} | x{} | {} | {} |\n",
+            "| {} | x{} |\n",
             quality.name(),
-            picked.resolution,
-            cell(picked.courant),
-            cell(picked.solver_tolerance)
+            quality.resolution()
         ));
     }
-    text.push_str("\nand comes to, error and CPU time, at the resolution of each study. Drafts were measured with a `solver_tolerance` of 1e-2 as well, \
-         which they no longer set: it made Bagnold's flow run away.\n\n| study | draft | standard | fine |\n|---|---|---|---|\n");
+    text.push_str("\nIt comes to, error and CPU time, at the resolution of each study:\n\n| study | draft | standard | fine |\n|---|---|---|---|\n");
     for study in &STUDIES {
         let (all, _) = standings(study, run);
         let cell = |quality: Quality| {
@@ -116,7 +111,7 @@ fn qualities(run: &PrecisionRun) -> String {
 fn spacing(study: &Study, m: &Measured) -> f64 {
     let quality = m.setting.strip_prefix("quality = ");
     let known = Quality::ALL.iter().find(|q| Some(q.name()) == quality);
-    study.spacing(m.resolution) / known.map_or(1.0, |q| q.picked().resolution)
+    study.spacing(m.resolution) / known.map_or(1.0, |q| q.resolution())
 }
 
 fn percent(share: f64) -> String {

@@ -417,7 +417,7 @@ mod tests {
                 let text = study.scene(&setting).unwrap();
                 let scene = scene::parse(study.name, &text)
                     .unwrap_or_else(|e| panic!("{} {}: {e}", study.name, setting.name()));
-                let spacing = study.spacing(setting.resolution) / scene.quality.picked().resolution;
+                let spacing = study.spacing(setting.resolution) / scene.quality.resolution();
                 assert!((scene.numerics.spacing - spacing).abs() < 1e-12);
                 if let Measure::RunOut { gauge, .. } = study.measure {
                     assert!(scene.gauges.iter().any(|g| g.name == gauge));

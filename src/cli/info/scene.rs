@@ -42,12 +42,13 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
     text
 }
 
-/// What resolution and tolerances the scene's quality picked.
+/// What resolution the scene's quality picked, and the tolerances beside it.
 fn quality(scene: &Scene) -> String {
-    let (n, resolution) = (&scene.numerics, scene.quality.picked().resolution);
+    let n = &scene.numerics;
     format!(
-        "{}: {resolution} times the resolution that the scene gives, courant {}, solver_tolerance {} (docs/precision.md)",
+        "{}: {} times the resolution that the scene gives, courant {}, solver_tolerance {} (docs/precision.md)",
         scene.quality.name(),
+        scene.quality.resolution(),
         n.courant,
         n.solver_tolerance,
     )

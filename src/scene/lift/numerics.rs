@@ -24,7 +24,11 @@ impl Lift<'_> {
             smoothing_ratio: raw.smoothing_ratio.as_ref()?.value.0,
             sound_speed: sound_speed?,
             scheme: scheme?,
-            courant: raw.courant.as_ref()?.value.0,
+            courant: match &raw.courant {
+                Some(given) => given.value.0,
+                None if matches!(scheme, Some(Scheme::Implicit)) => 0.7,
+                None => 0.5,
+            },
             yield_form,
             cap_time: match &raw.cap_time {
                 Some(given) => given.value.0,

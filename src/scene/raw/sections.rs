@@ -73,7 +73,7 @@ table! {
     RawNumerics {
         /// Particle spacing dp: the resolution. Bodies are filled on a lattice of this spacing, the first row half a spacing inside.
         required spacing: Length, in Range::above(0.0);
-        /// Resolution and tolerances taken together, as the studies in docs/precision.md found them: spacing is that of "standard". What the file gives itself stays.
+        /// Resolution, as the studies in docs/precision.md found it worth its time: spacing is that of "standard".
         optional quality: QualityWord, default "standard";
         /// Smoothing length over particle spacing.
         optional smoothing_ratio: Ratio, in Range::within(1.2, 2.5), default 1.6;
@@ -85,8 +85,8 @@ table! {
         optional grain_compressibility: Compressibility, in Range::above(0.0);
         /// How forces are formed and integrated in time.
         optional scheme: SchemeWord, default "implicit";
-        /// Acoustic Courant number: internal step over h/c0.
-        optional courant: Ratio, in Range::above_to(0.0, 1.0), default 0.5;
+        /// Acoustic Courant number: internal step over h/c0; if left out, 0.7, or 0.5 with the schemes paper_a and paper_b.
+        optional courant: Ratio, in Range::above_to(0.0, 1.0);
         /// Scheme paper_a: the largest yield stress that is expected, tau_0; if left out, tan(static_friction_angle) times the weight of the deepest material.
         optional reference_yield_stress: Pressure, in Range::above(0.0);
         /// Scheme paper_a: scaling time m_0 of the regularised viscosity at that stress. Longer creeps less and takes smaller steps.
@@ -131,7 +131,7 @@ table! {
 choice! {
     /// How accurate, how fast.
     QualityWord {
-        /// for a first look: twice the spacing, courant 0.7; about a tenth of the CPU time in the plane
+        /// for a first look: twice the spacing; about an eighth of the CPU time in the plane
         "draft" => Draft,
         /// the spacing given, defaults
         "standard" => Standard,
