@@ -24,9 +24,24 @@ pub(crate) struct Sampler<const D: usize> {
 pub(crate) struct Sight {
     /// The one material, if not all.
     pub(crate) material: Option<u8>,
-    /// Which pressure.
-    pub(crate) quantity: PressureQuantity,
+    /// What of it.
+    pub(crate) quantity: Shows,
 }
+
+/// What a gauge wants to know of each particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Shows {
+    /// A pressure [Pa].
+    Pressure(PressureQuantity),
+    /// |tau| = sqrt(tau:tau/2) [Pa].
+    ShearStress,
+}
+
+/// Stress on both sides of an interface.
+const STRESS: Sight = Sight {
+    material: None,
+    quantity: Shows::ShearStress,
+};
 
 #[derive(Clone, Debug)]
 enum Kind<const D: usize> {
@@ -37,6 +52,8 @@ enum Kind<const D: usize> {
         before: f64,
     },
     Force(ForceTarget),
+    /// Where one material ends; the stress there is that of all.
+    Interface(DepthLine<D>),
 }
 
 impl<const D: usize> Sampler<D> {
@@ -49,10 +66,10 @@ impl<const D: usize> Sampler<D> {
         let gauges = scene.gauges.iter().map(|g| kind(g, &period)).collect();
         let sight = |g: &Gauge| Sight {
             material: g.material.map(|m| m as u8),
-            quantity: match g.kind {
+            quantity: Shows::Pressure(match g.kind {
                 GaugeKind::Pressure { quantity, .. } => quantity,
                 _ => PressureQuantity::Total,
-            },
+            }),
         };
         Self {
             gauges,
@@ -92,6 +109,9 @@ impl<const D: usize> Sampler<D> {
     /// What some gauge sees, each once.
     pub(crate) fn seen(&self) -> Vec<Sight> {
         let mut seen = self.sights.clone();
+        if self.gauges.iter().any(|g| matches!(g, Kind::Interface(_))) {
+            seen.push(STRESS);
+        }
         seen.sort_unstable();
         seen.dedup();
         seen
@@ -137,6 +157,7 @@ impl<const D: usize> Sampler<D> {
             }
             Kind::Discharge { section, before } => discharge(section, *before, step),
             Kind::Force(target) => force::<D>(*target, devices, step),
+            Kind::Interface(line) => gauge::interface_stress(line, &view(*sight), &view(STRESS)),
         };
         self.gauges.iter().zip(&self.sights).map(read).collect()
     }
@@ -149,7 +170,7 @@ impl<const D: usize> Sampler<D> {
         step: f64,
     ) -> Vec<Reading> {
         let read = |(gauge, before): (&Kind<D>, &Reading)| match gauge {
-            Kind::Field(_) => before.clone(),
+            Kind::Field(_) | Kind::Interface(_) => before.clone(),
             _ if before.validity == Validity::Outside => before.clone(),
             Kind::Discharge { section, before } => discharge(section, *before, step),
             Kind::Force(target) => force::<D>(*target, devices, step),
@@ -206,6 +227,11 @@ fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
         GaugeKind::Pressure { at, .. } => {
             Kind::Field(Field::Pressure(PressureProbe { at: flat(at) }))
         }
+        GaugeKind::InterfaceStress { foot, up, length } => Kind::Interface(DepthLine {
+            foot: flat(foot),
+            up: flat(up),
+            length: *length,
+        }),
         GaugeKind::Mass { lower, upper } => Kind::Field(Field::Mass(MassBox {
             lower: flat(lower),
             upper: flat(upper),

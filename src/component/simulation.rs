@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use super::engine::{Advance, Devices, Engine, GateState, InflowState, Inputs, SolverError};
-use super::sampling::{Sampler, Sight};
+use super::sampling::{Sampler, Shows, Sight};
 use super::snapshot;
 use super::{Error, MassLedger, ParticleView, Statistics, Totals};
 use crate::gauge::{Reading, View};
@@ -89,7 +89,14 @@ impl<const D: usize> Simulation<D> {
     fn show(&self, sight: Sight) -> Shown<D> {
         let grains = &self.state.grains;
         let material = sight.material;
-        let (pressure, has): (Vec<f64>, Vec<bool>) = self.pressures(sight.quantity);
+        let (pressure, has): (Vec<f64>, Vec<bool>) = match sight.quantity {
+            Shows::Pressure(quantity) => self.pressures(quantity),
+            Shows::ShearStress => {
+                let all = 0..grains.len();
+                all.map(|i| (self.solver.shear_stress(&self.state, i), true))
+                    .unzip()
+            }
+        };
         let is_seen = |i: &usize| {
             !grains.drained[*i] && has[*i] && material.is_none_or(|m| m == grains.phase[*i])
         };

@@ -9,6 +9,7 @@
 mod crossing;
 mod depth;
 mod front;
+mod interface;
 mod mass;
 mod pressure;
 mod profile;
@@ -17,6 +18,7 @@ mod view;
 pub use crossing::Crossing;
 pub use depth::DepthLine;
 pub use front::Front;
+pub use interface::interface_stress;
 pub use mass::MassBox;
 pub use pressure::PressureProbe;
 pub use profile::Profile;

@@ -27,18 +27,23 @@ impl<const D: usize> PressureProbe<D> {
         if view.is_covered(&self.at) {
             return Reading::none(1, Validity::Blocked);
         }
-        let mut weights = 0.0;
-        let mut near: Vec<(f64, [f64; D], f64)> = Vec::new();
-        view.for_each_particle_at(&self.at, |j, x, r| {
-            let weight = view.volume(j) * view.kernel.w(r);
-            weights += weight;
-            near.push((weight, crate::math::sub(&x, &self.at), view.pressure[j]));
-        });
-        if weights < DRY {
-            return Reading::none(1, Validity::Empty);
+        match fit_at(view, &self.at) {
+            Some(pressure) => Reading::valid(vec![pressure]),
+            None => Reading::none(1, Validity::Empty),
         }
-        Reading::valid(vec![fitted(&near, weights, view.spacing).max(0.0)])
     }
+}
+
+/// Value at a place of the linear fit to what `view` shows as pressure; `None` where there is too little material.
+pub(super) fn fit_at<const D: usize>(view: &View<D>, at: &[f64; D]) -> Option<f64> {
+    let mut weights = 0.0;
+    let mut near: Vec<(f64, [f64; D], f64)> = Vec::new();
+    view.for_each_particle_at(at, |j, x, r| {
+        let weight = view.volume(j) * view.kernel.w(r);
+        weights += weight;
+        near.push((weight, crate::math::sub(&x, at), view.pressure[j]));
+    });
+    (weights >= DRY).then(|| fitted(&near, weights, view.spacing).max(0.0))
 }
 
 /// Value at d = 0 of the linear fit to rows of weight, place d [m] and pressure [Pa].

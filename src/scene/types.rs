@@ -321,6 +321,15 @@ pub enum GaugeKind {
         /// Which pressure.
         quantity: PressureQuantity,
     },
+    /// Shear stress at the highest point of one material on a line [Pa]: between it and what lies above.
+    InterfaceStress {
+        /// Foot of the line [m].
+        foot: Point,
+        /// Unit vector along the line.
+        up: Point,
+        /// Length searched [m].
+        length: f64,
+    },
     /// Mass in a box [kg].
     Mass {
         /// Lower corner [m].

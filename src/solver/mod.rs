@@ -626,6 +626,26 @@ impl<const D: usize> Solver<D> {
         &self.materials[state.grains.phase[i] as usize]
     }
 
+    /// |tau| = sqrt(tau:tau/2) of a particle of a state that this solver has just stepped, started or resumed [Pa].
+    #[must_use]
+    pub fn shear_stress(&self, state: &State<D>, i: usize) -> f64 {
+        let (k, material) = (&self.kinematics[i], self.material_of(state, i));
+        let exact = matches!(self.numerics.scheme, Scheme::Implicit)
+            && matches!(self.numerics.yield_form, YieldForm::Exact { .. })
+            && !material.is_newtonian();
+        let stress = if exact {
+            self.geometry.size(&state.grains.stress[i])
+        } else {
+            self.viscosity[i] * k.shear
+        };
+        // A fluid's viscosity and stress are those that work on the plain rate.
+        if material.is_fluid() && matches!(self.numerics.scheme, Scheme::Implicit) {
+            stress / k.correction
+        } else {
+            stress
+        }
+    }
+
     /// Inertial number of each particle [1].
     #[must_use]
     pub fn inertial_number(&self) -> &[f64] {

@@ -132,7 +132,8 @@ impl Artist<'_> {
             (V3::from(foot) + length * V3::from(up)).into()
         };
         let (corners, label_at): (Vec<Point>, Option<Point>) = match &gauge.kind {
-            GaugeKind::Depth { foot, up, length } => {
+            GaugeKind::Depth { foot, up, length }
+            | GaugeKind::InterfaceStress { foot, up, length } => {
                 (vec![*foot, end(*foot, *up, *length)], Some(*foot))
             }
             GaugeKind::Profile {

@@ -357,6 +357,9 @@ fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
             };
             vec![reading("pressure", "Pa", 0, text)]
         }
+        GaugeKind::InterfaceStress { .. } => vec![
+            reading("shear_stress", "Pa", 0, "shear stress at the highest point").within(0.0, f64::INFINITY),
+        ],
         GaugeKind::Mass { .. } => vec![reading("mass", "kg", 0, "mass in the box")],
         GaugeKind::Front { .. } => vec![
             reading(

@@ -144,10 +144,19 @@ fn draw_gauge(svg: &mut Svg<'_>, gauge: &Gauge, scene: &Scene) {
     let style = format!("{THIN} stroke=\"{GAUGE}\"");
     let title = |what: &str| format!("gauge {}: {what}", gauge.name);
     let at = match &gauge.kind {
-        GaugeKind::Depth { foot, up, length } => {
+        GaugeKind::Depth { foot, up, length } | GaugeKind::InterfaceStress { foot, up, length } => {
             let ends = [*foot, plus(*foot, *up, *length)].map(|end| view.place(end));
-            svg.line(&ends, false, &style, &title("depth along this line"));
-            dot(svg, ends[0], &title("foot of the depth"));
+            let what = match gauge.kind {
+                GaugeKind::Depth { .. } => "depth",
+                _ => "stress of the interface",
+            };
+            svg.line(
+                &ends,
+                false,
+                &style,
+                &title(&format!("{what} along this line")),
+            );
+            dot(svg, ends[0], &title(&format!("foot of the {what}")));
             // Beside the line rather than on the bed, where walls and gates have their names.
             (
                 ends[0].0,

@@ -159,6 +159,7 @@ fn around((least, most): (f64, f64), start: f64) -> (f64, f64) {
 fn points(gauge: &RawGauge) -> Vec<(&'static str, &Coordinates<Length>)> {
     let all = match gauge {
         RawGauge::Depth(g) => vec![("foot", &g.foot)],
+        RawGauge::InterfaceStress(g) => vec![("foot", &g.foot)],
         RawGauge::Profile(g) => vec![("from", &g.from), ("to", &g.to)],
         RawGauge::Discharge(g) => vec![("from", &g.from), ("to", &g.to)],
         RawGauge::Pressure(g) => vec![("at", &g.at)],
@@ -210,6 +211,7 @@ fn apply(raw: &mut RawScene, target: Target, value: f64) {
             let gauge = entry(raw.gauges.as_mut(), i).and_then(|e| e.value.as_mut());
             let at = match (gauge, point) {
                 (Some(RawGauge::Depth(g)), _) => &mut g.foot,
+                (Some(RawGauge::InterfaceStress(g)), _) => &mut g.foot,
                 (Some(RawGauge::Profile(g)), 0) => &mut g.from,
                 (Some(RawGauge::Profile(g)), _) => &mut g.to,
                 (Some(RawGauge::Discharge(g)), 0) => &mut g.from,

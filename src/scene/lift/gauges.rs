@@ -2,8 +2,8 @@
 
 use super::{Lift, dot};
 use crate::scene::raw::{
-    At, Coordinates, Entry, Length, Place, QuantityWord, Ratio, RawDepth, RawFront, RawGauge,
-    RawMaterial, RawPressure, RawProfile,
+    At, Coordinates, Entry, Length, Place, QuantityWord, Ratio, RawFront, RawGauge, RawMaterial,
+    RawPressure, RawProfile,
 };
 use crate::scene::types::{ForceTarget, Gauge, GaugeKind, Point, PressureQuantity};
 
@@ -25,7 +25,14 @@ impl Lift<'_> {
 
     fn gauge(&mut self, entry: &Entry<RawGauge>, raw: &RawGauge) -> Option<GaugeKind> {
         match raw {
-            RawGauge::Depth(raw) => self.depth(raw),
+            RawGauge::Depth(raw) => {
+                let (foot, up, length) = self.line(&raw.foot, &raw.up, &raw.length)?;
+                Some(GaugeKind::Depth { foot, up, length })
+            }
+            RawGauge::InterfaceStress(raw) => {
+                let (foot, up, length) = self.line(&raw.foot, &raw.up, &raw.length)?;
+                Some(GaugeKind::InterfaceStress { foot, up, length })
+            }
             RawGauge::Profile(raw) => self.profile(&entry.place, raw),
             RawGauge::Discharge(raw) => {
                 let span = self.span(raw.span.as_ref(), &raw.given, &entry.place);
@@ -88,6 +95,7 @@ impl Lift<'_> {
     fn seen_material(&mut self, gauge: &RawGauge) -> Option<Option<usize>> {
         let name = match gauge {
             RawGauge::Depth(raw) => &raw.material,
+            RawGauge::InterfaceStress(raw) => &raw.material,
             RawGauge::Profile(raw) => &raw.material,
             RawGauge::Discharge(raw) => &raw.material,
             RawGauge::Pressure(raw) => &raw.material,
@@ -108,11 +116,17 @@ impl Lift<'_> {
         .map(Some)
     }
 
-    fn depth(&mut self, raw: &RawDepth) -> Option<GaugeKind> {
-        let up = self.gauge_up(raw.up.as_ref())?;
-        let foot = self.point(raw.foot.as_ref()?)?;
-        let length = self.line_length(raw.length.as_ref(), &[foot], up)?;
-        Some(GaugeKind::Depth { foot, up, length })
+    /// Foot, unit vector and length of a line that is searched for material.
+    fn line(
+        &mut self,
+        foot: &Option<At<Coordinates<Length>>>,
+        up: &Option<At<Coordinates<Ratio>>>,
+        length: &Option<At<Length>>,
+    ) -> Option<(Point, Point, f64)> {
+        let up = self.gauge_up(up.as_ref())?;
+        let foot = self.point(foot.as_ref()?)?;
+        let length = self.line_length(length.as_ref(), &[foot], up)?;
+        Some((foot, up, length))
     }
 
     fn profile(&mut self, place: &Place, raw: &RawProfile) -> Option<GaugeKind> {

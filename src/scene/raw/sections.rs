@@ -346,6 +346,7 @@ tagged! {
         "discharge" => Discharge(RawDischarge),
         "force" => Force(RawForce),
         "pressure" => Pressure(RawPressure),
+        "interface_stress" => InterfaceStress(RawInterfaceStress),
         "front" => Front(RawFront),
         "mass" => Mass(RawMass),
     }
@@ -362,6 +363,20 @@ table! {
         optional length: Length, in Range::above(0.0);
         /// Only this material; all if left out.
         optional material: Text;
+    }
+}
+
+table! {
+    /// Shear stress where a material ends and another begins: what water drags on a bed with.
+    RawInterfaceStress {
+        /// Foot of the line, on the bed.
+        required foot: Coordinates<Length>;
+        /// Direction of the line, of any length; upwards along the last axis if left out.
+        optional up: Coordinates<Ratio>;
+        /// Length of the line; up to the domain's edge if left out.
+        optional length: Length, in Range::above(0.0);
+        /// The material whose highest point on the line is looked at.
+        required material: Text;
     }
 }
 

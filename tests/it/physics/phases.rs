@@ -241,6 +241,59 @@ fn pores_are_asked_for_where_there_are_some() {
     );
 }
 
+/// A film of two fluids on a slope of 3 degrees: `upper` [kg/m^3] 20 mm deep over 30 mm of a heavier one.
+fn two_fluids(yields: f64) -> Scene {
+    parse(&format!(
+        r#"
+name = "film"
+[domain]
+lower = [0, -0.02]
+upper = [0.025, 0.08]
+periodic = ["x"]
+slope = "3 deg"
+[numerics]
+spacing = "2.5 mm"
+[materials.upper]
+law = "fluid"
+density = 1000
+consistency = 5
+[materials.lower]
+law = "fluid"
+density = 1500
+consistency = 5
+yield_stress = {yields}
+[bodies.lower]
+material = "lower"
+box = {{ lower = [0, 0], upper = [0.025, 0.03] }}
+[bodies.upper]
+material = "upper"
+box = {{ lower = [0, 0.03], upper = [0.025, 0.05] }}
+[walls.bed]
+polyline = [[0, 0], [0.025, 0]]
+[gauges.drag]
+kind = "interface_stress"
+foot = [0.0125, 0]
+material = "lower"
+[run]
+step = 0.05
+until = 2
+"#
+    ))
+}
+
+#[test]
+fn the_stress_between_two_layers_carries_the_upper_ones_weight() {
+    // Whether the lower fluid's stress is that of its rate or of its yield.
+    for yields in [0.0, 5.0] {
+        let mut unit = Unit::new(&two_fluids(yields));
+        unit.run_to(2.0);
+        let exact = 1000.0 * G * 0.02 * 3f64.to_radians().sin();
+        let got = unit.get("gauge.drag.shear_stress");
+        println!("interface stress {got:.4} Pa for {exact:.4} Pa, yield stress {yields} Pa");
+        assert!((got / exact - 1.0).abs() < 0.03, "{got} for {exact}");
+    }
+}
+
 /// Silt and water side by side in free space, turning and shearing.
 fn thrown(gravity: f64) -> Scene {
     parse(&format!(
