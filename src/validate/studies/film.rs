@@ -40,7 +40,7 @@ struct Film {
     yield_stress: f64,
     /// [m]
     depth: f64,
-    /// End [s].
+    /// End [s]: shear-thinning fluids take long.
     until: f64,
 }
 
@@ -52,7 +52,7 @@ const FILMS: [Film; 4] = [
         index: 1.0,
         yield_stress: 0.0,
         depth: 0.05,
-        until: 4.0,
+        until: 6.0,
     },
     Film {
         name: "bingham",
@@ -61,7 +61,7 @@ const FILMS: [Film; 4] = [
         index: 1.0,
         yield_stress: 10.0,
         depth: 0.05,
-        until: 4.0,
+        until: 6.0,
     },
     Film {
         name: "power",
@@ -70,7 +70,7 @@ const FILMS: [Film; 4] = [
         index: 0.5,
         yield_stress: 0.0,
         depth: 0.05,
-        until: 6.0,
+        until: 14.0,
     },
     CLAY,
 ];
@@ -83,7 +83,7 @@ const CLAY: Film = Film {
     index: 0.472,
     yield_stress: 30.0,
     depth: 0.06,
-    until: 4.0,
+    until: 16.0,
 };
 
 /// Rows over the depth.

@@ -12,7 +12,10 @@ pub(super) const STUDY: Study = Study {
     about: "0.15 m of water over 0.15 m of saturated silt (1990 kg/m^3, 30 degrees) in a box 0.3 m wide, 20 sqrt(H/g) = 3.5 s, sleep \
 off. Pressure grows by the weight of what lies above, pore pressure by the water's, and their difference is the buoyant weight \
 (1990 - 1000) g a metre of silt. Gauges in the middle of the box, means over the second half; that it is still is judged by the kinetic \
-energy and by how far the levels wander.",
+energy and by how far the levels wander.\n\n\
+Two things are of the order of a spacing: pressures are those of a surface 0.1 spacings higher, the row at a surface being half \
+empty; and the friction law's mean pressure, of which the effective pressure is made, is the vertical one only where sand presses \
+sideways as much as down, which water that trembles above it changes in time.",
     members,
     analyse,
 };
@@ -28,8 +31,8 @@ const STEP: f64 = 0.05;
 const KINETIC: &str = "energy.kinetic";
 
 /// Rows over the height.
-fn rows(effort: Effort) -> [u32; 2] {
-    effort.pick([20, 40], [8, 12])
+fn rows(effort: Effort) -> [u32; 3] {
+    effort.pick([20, 40, 80], [8, 10, 12])
 }
 
 /// Pressure gauges and what they should read [Pa].
@@ -152,7 +155,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
             let points = values(found, name).unwrap_or_default();
             let points = points.iter().enumerate();
             let points = points.map(|(n, p)| (STEP * n as f64, p / exact)).collect();
-            let look = if k == 0 { Look::Thin } else { Look::Line };
+            let look = if k == 2 { Look::Line } else { Look::Thin };
             curves.push(Curve::new(format!("{what}, {rows} rows"), points, look, j));
         }
     }
