@@ -9,6 +9,7 @@ import base64
 import json
 import sys
 import threading
+import time
 import uuid
 
 import zenoh
@@ -35,15 +36,21 @@ class Refused(Exception):
 class Component:
     """A served component, asked by request and reply."""
 
-    def __init__(self, session, instance, client="example"):
+    def __init__(self, session, instance, client="example", attempts=3):
         self.session = session
         self.base = f"sandgate/v1/{instance}"
         self.client = client
+        self.attempts = attempts
 
     def ask(self, verb, timeout=60.0, **fields):
-        """One request. The identifier makes it safe to send the same request again after a time-out."""
+        """One request. If nobody answers it is sent again, for the connection may have broken and be there again; its identifier
+        sees to it that it is carried out once."""
         body = json.dumps({"req": uuid.uuid4().hex, "client": self.client, **fields})
-        replies = list(self.session.get(f"{self.base}/@rpc/{verb}", payload=body, timeout=timeout))
+        for left in reversed(range(self.attempts)):
+            replies = list(self.session.get(f"{self.base}/@rpc/{verb}", payload=body, timeout=timeout))
+            if replies or not left:
+                break
+            time.sleep(1.0)
         if not replies:
             raise TimeoutError(f"nobody answers at {self.base}")
         text = (replies[0].ok or replies[0].err).payload.to_string()

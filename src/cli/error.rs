@@ -106,6 +106,12 @@ pub enum CliError {
 }
 
 impl CliError {
+    /// The message as it stands in a warning.
+    pub(super) fn as_warning(&self) -> String {
+        let text = self.to_string();
+        text.strip_prefix("error: ").unwrap_or(&text).to_owned()
+    }
+
     /// The exit code, 0 to 255.
     #[must_use]
     pub fn exit_code(&self) -> u8 {

@@ -705,6 +705,13 @@ fn python_clients_watch_and_drive_a_served_silo() {
 }
 
 #[test]
+fn a_subscriber_that_takes_nothing_holds_up_nobody() {
+    let program = env!("CARGO_BIN_EXE_sandgate");
+    let environment = [("SANDGATE", OsStr::new(program))];
+    python::pytest("test_slow_subscribers.py", &environment);
+}
+
+#[test]
 fn the_examples_do_what_they_say() {
     let program = env!("CARGO_BIN_EXE_sandgate");
     // `cargo test --test it` builds no examples.

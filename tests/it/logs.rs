@@ -941,3 +941,10 @@ fn what_clients_did_runs_again_and_is_replayed() {
         ],
     );
 }
+
+#[cfg(feature = "bus")]
+#[test]
+fn gates_and_inflows_of_every_case_moved_live_run_again() {
+    let program = OsStr::new(env!("CARGO_BIN_EXE_sandgate"));
+    python::pytest("test_live_cases.py", &[("SANDGATE", program)]);
+}

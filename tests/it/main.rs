@@ -22,6 +22,8 @@ mod faults;
 mod fmi_page;
 #[cfg(feature = "cli")]
 mod fmu;
+#[cfg(all(feature = "record", feature = "cli"))]
+mod full_disk;
 mod gauges;
 mod json_schema;
 mod licenses;

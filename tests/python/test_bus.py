@@ -19,48 +19,12 @@ import time
 import pytest
 import zenoh
 
-ROOT = pathlib.Path(os.environ["SANDGATE_ROOT"])
-SCENE = ROOT / "tests/scenes/small_silo.toml"
-BASE = "sandgate/v1/small_silo"
-GATE = "gate.main.opening"
+sys.path.insert(0, os.path.dirname(__file__))
+
+from serving import BASE, GATE, ROOT, SCENE, Server, raw, served, subscribe, until
+from bus_client import Component, Refused, open_session
+
 STEP_NS = 5_000_000
-
-sys.path.insert(0, str(ROOT / "examples"))
-from bus_client import Component, Refused, open_session  # noqa: E402
-
-
-class Server:
-    """The program, serving; its endpoint is the one that it printed."""
-
-    def __init__(self, *arguments):
-        command = [os.environ["SANDGATE"], "serve", str(SCENE), "--threads", "1", *arguments]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.endpoint = None
-        for line in self.process.stdout:
-            if line.startswith("listening on "):
-                self.endpoint = line.split()[-1]
-            if "(Ctrl-C ends)" in line:
-                return
-        raise AssertionError(f"{command} did not serve: {self.process.stderr.read()}")
-
-    def end(self):
-        """Ends it politely and gives what it printed."""
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGINT)
-        try:
-            return self.process.communicate(timeout=60)
-        finally:
-            self.process.kill()
-
-
-@contextlib.contextmanager
-def served(*arguments):
-    server = Server(*arguments)
-    try:
-        with open_session(server.endpoint) as session:
-            yield server, session, Component(session, "small_silo", client="pytest")
-    finally:
-        server.end()
 
 
 @pytest.fixture(scope="module")
@@ -80,25 +44,6 @@ def silo(shared):
 @pytest.fixture
 def session(shared):
     return shared[1]
-
-
-def subscribe(session, key):
-    arrived = queue.Queue()
-    return session.declare_subscriber(key, arrived.put), arrived
-
-
-def raw(session, key, payload=None, timeout=20.0):
-    """Every answer to a query as (is it an error, JSON)."""
-    replies = session.get(key, payload=payload, timeout=timeout)
-    return [(r.ok is None, json.loads((r.ok or r.err).payload.to_string())) for r in replies]
-
-
-def until(condition, seconds=20.0):
-    """Waits for what must become true; polls, so that a slow machine only takes longer."""
-    end = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.01)
 
 
 def test_gauges_are_published_as_they_are_computed(session, silo):
@@ -403,34 +348,6 @@ def test_it_runs_by_itself_at_the_pace_it_was_told():
         assert time.monotonic() - began > 0.4, "0.3 s at half pace take at least 0.6 s, less what status lags"
         paused = silo.ask("pause")
         assert silo.ask("step")["step"] == paused["step"] + 1
-
-
-def test_a_subscriber_that_stands_still_holds_up_nobody():
-    with served() as (server, session, silo):
-        watcher = f"""
-import os, sys, time
-sys.path.insert(0, {str(ROOT / "examples")!r})
-from bus_client import open_session
-with open_session({server.endpoint!r}) as session:
-    kept = [session.declare_subscriber("{BASE}/out/" + what, lambda sample: None) for what in ("particles", "**")]
-    print("subscribed", flush=True)
-    time.sleep(600)
-"""
-        with subprocess.Popen([sys.executable, "-c", watcher], stdout=subprocess.PIPE, text=True) as child:
-            try:
-                assert child.stdout.readline() == "subscribed\n"
-                child.send_signal(signal.SIGSTOP)
-                slowest, end, dropped = 0.0, time.monotonic() + 20, 0
-                # Publications are dropped once the queue is full behind one that is held up.
-                while not dropped and time.monotonic() < end:
-                    began = time.monotonic()
-                    silo.ask("step", dt_ns=100_000)
-                    dropped = silo.ask("status")["dropped_publications"]
-                    slowest = max(slowest, time.monotonic() - began)
-                # Zenoh holds a publication up for 5 s; a step or a status that waited for it would show.
-                assert slowest < 2.0
-            finally:
-                child.kill()
 
 
 def test_the_liveliness_token_ends_with_the_process():

@@ -1,7 +1,7 @@
 //! The server: a Zenoh session, its callbacks and its threads. The only folder that names `zenoh`.
 //!
 //! Callbacks only check and hand on to bounded queues. One thread (the caller's) steps the component, one sends
-//! replies, one publishes; a subscriber that stands still can hold up publications, never a step or a reply. Every
+//! replies, one publishes; a subscriber that stands still holds up publications for a moment, never a step or a reply. Every
 //! query is answered exactly once, also when a thread panics or the server ends ([`Waiting`]).
 
 mod beside;

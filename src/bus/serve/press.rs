@@ -1,4 +1,9 @@
-//! The publishing thread: it may be held up by a subscriber that stands still; nothing else is then.
+//! The publishing thread. A subscriber that does not take what it gets (stopped, asleep in its callback) holds it up once,
+//! for as long as `session` says; from then on that subscriber misses what is published, until it takes something again,
+//! and the others get all. Its connection stays open.
+//!
+//! Publications have queues of their own in Zenoh, below those of replies: a reply does not wait behind what its client does
+//! not take, and gauges do not wait behind particles.
 
 use super::failed;
 use super::replies::encoding;
@@ -10,7 +15,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::Receiver;
-use zenoh::qos::CongestionControl;
+use zenoh::qos::{CongestionControl, Priority};
 use zenoh::{Session, Wait as _};
 
 /// Publishers by key.
@@ -25,11 +30,12 @@ impl Press {
         keys: &Keys,
         wanted: Arc<AtomicBool>,
     ) -> Result<Self, BusError> {
-        // Particles are large and soon old: they are dropped rather than waited for, and made only for somebody.
+        // Particles are large, and made only for somebody.
         let key: Arc<str> = topics::particles(keys.base()).into();
         let particles = session
             .declare_publisher(key.to_string())
             .congestion_control(CongestionControl::Drop)
+            .priority(Priority::Background)
             .wait()
             .map_err(failed("publish particles"))?;
         particles
@@ -57,7 +63,8 @@ impl Press {
             let declared = self
                 .session
                 .declare_publisher(publication.key.to_string())
-                .congestion_control(CongestionControl::Block)
+                .congestion_control(CongestionControl::Drop)
+                .priority(Priority::DataLow)
                 .wait();
             // Fails only once the session is closed; then there is nobody to publish to.
             if let Ok(publisher) = declared {

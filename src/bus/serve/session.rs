@@ -11,6 +11,14 @@ use zenoh::{Config, Session, Wait as _};
 /// How often a free port is looked for, should somebody else take the one that was found.
 const PORT_ATTEMPTS: usize = 8;
 
+/// How long a publication waits for a subscriber that does not take it before that subscriber misses it [us], unless the
+/// configuration says otherwise. Zenoh's own 1 ms loses bursts; who publishes cannot wait for long, because others wait with
+/// him. Bursts are held by the sockets and by our queue.
+const WAIT_BEFORE_DROP: (&str, i64) = (
+    "transport/link/tx/queue/congestion_control/drop/wait_before_drop",
+    50_000,
+);
+
 /// Opens a session by an explicit configuration: loopback unless told otherwise, scouting and admin space off.
 pub(super) fn open(options: &ServeOptions) -> Result<(Session, Vec<String>), BusError> {
     let (mut config, wanted) = configure(options)?;
@@ -60,6 +68,10 @@ fn configure(options: &ServeOptions) -> Result<(Config, Vec<String>), BusError> 
     }
     let mut connect = of_file("connect/endpoints");
     connect.extend(options.connect.iter().cloned());
+    let (key, wait) = WAIT_BEFORE_DROP;
+    if config.get_json(key).ok() == plain.get_json(key).ok() {
+        insert(&mut config, key, &wait.to_string())?;
+    }
     insert(&mut config, "connect/endpoints", &as_json(&connect))?;
     for (key, value) in [
         ("scouting/multicast/enabled", "false"),

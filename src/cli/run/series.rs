@@ -128,7 +128,8 @@ impl Series {
             && let Err(error) = self.flush()
             && !std::mem::replace(&mut self.warned, true)
         {
-            eprintln!("warning: {error}; the run goes on and tries again every second");
+            let text = error.as_warning();
+            eprintln!("warning: {text}; the run goes on and tries again every second");
         }
         Ok(())
     }

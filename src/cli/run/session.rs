@@ -50,6 +50,15 @@ impl Outcome {
             Self::Failed(error) => ("failed", Some(error.to_string())),
         }
     }
+
+    /// What could not be done at the end is the error of a run that had none, and else a warning.
+    fn fails_by(&mut self, done: Result<(), CliError>) {
+        match (done, &self) {
+            (Ok(()), _) => {}
+            (Err(error), Self::Failed(_)) => eprintln!("warning: {}", error.as_warning()),
+            (Err(error), _) => *self = Self::Failed(error),
+        }
+    }
 }
 
 /// Figures of this part of a run (a resumed run has several parts).
@@ -214,7 +223,8 @@ impl Session {
                 // The checkpoint before it is still there.
                 Err(error @ CliError::File { .. }) => {
                     if !std::mem::replace(&mut self.warned, true) {
-                        eprintln!("warning: {error}; the run goes on without new checkpoints");
+                        let text = error.as_warning();
+                        eprintln!("warning: {text}; the run goes on without new checkpoints");
                     }
                     self.plan_checkpoint();
                 }
@@ -255,30 +265,32 @@ impl Session {
         self.folder.replace("summary.json", text.as_bytes())
     }
 
-    /// Finishes every file, prints the table and says how to go on.
+    /// Finishes every file, prints the table and says how to go on. A file that cannot be written does not keep the others
+    /// from being written, and does not hide what ended the run: the first error is the run's, the others are told.
     ///
     /// # Errors
     /// The error that ended the run; [`CliError::Interrupted`] with the command to go on; [`CliError::File`],
     /// [`CliError::Log`].
     pub(super) fn close(mut self, mut outcome: Outcome) -> Result<(), CliError> {
         self.progress.finish();
-        if let Err(error) = self.finish_log(&outcome)
-            && !matches!(outcome, Outcome::Failed(_))
-        {
-            outcome = Outcome::Failed(error);
+        match self.finish_log(&outcome) {
+            // Told already: it is the log that ended the run.
+            Err(_) if matches!(outcome, Outcome::Failed(CliError::Log(_))) => {}
+            finished => outcome.fails_by(finished),
         }
-        self.series.flush()?;
-        if self.component.mode() == Mode::Stepping {
-            self.checkpoint()?;
-        }
+        outcome.fails_by(match self.component.mode() {
+            Mode::Stepping => self.checkpoint(),
+            _ => self.series.flush(),
+        });
         let title = &self.component.scene().title;
         match plot::svg(title, &self.series) {
-            Ok(svg) => self.folder.replace("gauges.svg", svg.as_bytes())?,
+            Ok(svg) => outcome.fails_by(self.folder.replace("gauges.svg", svg.as_bytes())),
             Err(error) => eprintln!("warning: gauges.svg could not be drawn: {error}"),
         }
         let (status, error) = outcome.words();
-        self.write_summary(status, error.as_deref())?;
-        say(&summary::table(&self, status))?;
+        let summary = self.write_summary(status, error.as_deref());
+        outcome.fails_by(summary);
+        say(&summary::table(&self, outcome.words().0))?;
         match outcome {
             Outcome::Finished => Ok(()),
             Outcome::Interrupted => Err(CliError::Interrupted(format!(
