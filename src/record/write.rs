@@ -1,24 +1,23 @@
 //! Writes a component's life to an MCAP file: what drove it, what came out, what was asked, and pictures.
 //!
 //! The recorder watches; it never changes the component, and a disk that is full does not stop the simulation unless
-//! the scene says that its log is required.
+//! the scene says that its log is required. `segments` ends files and begins the next, `messages` puts what is told into words.
 
-use super::channels::{Channel, Channels};
+mod messages;
+mod segments;
+
+use super::channels::Channels;
 use super::error::{Failure, RecordError};
 use super::file::{LogFile, Pace, Writing};
-use super::options::{Finished, RecordOptions};
+use super::options::RecordOptions;
 use super::place::Place;
-use super::preamble::{has_state, owned, write_preamble};
+use super::preamble::{has_state, write_preamble};
 use super::sink::Sink;
 use crate::component::{Component, StepReport, ValueReference};
-use crate::wire::convert::{self, nanoseconds, timestamp};
-use crate::wire::foxglove::{Log, LogLevel, SceneUpdate};
-use crate::wire::messages::{AppliedEvent, Command};
+use crate::wire::messages::AppliedEvent;
 use crate::wire::{Moment, Pending, keys, picture};
-use prost::Message;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Records one component. Made by [`Recorder::create`], ended by [`Recorder::finish`].
 pub struct Recorder {
@@ -282,176 +281,6 @@ impl Recorder {
         self.rotate(component)
     }
 
-    /// Goes on in the next file (`run-0-0001.mcap`) if it is time. That file starts with the state as it is now and
-    /// counts messages on, so that a gap between files can be seen.
-    fn rotate(&mut self, component: &Component) -> Result<(), RecordError> {
-        let RecordOptions {
-            rotate_every,
-            rotate_bytes,
-            ..
-        } = self.options;
-        // A billionth is allowed for, as in `particles_due`.
-        let late =
-            rotate_every > 0.0 && component.time() - self.began >= rotate_every * (1.0 - 1e-9);
-        let large = rotate_bytes > 0 && self.file.bytes() >= rotate_bytes;
-        let Some(place) = self.place.as_ref().filter(|_| late || large) else {
-            return Ok(());
-        };
-        if self.file.failure().is_some() {
-            return Ok(());
-        }
-        match self.follow(place.next(), component, "rotated") {
-            Ok(mut following) => {
-                following.first_time = self.first_time;
-                following.snapshots = self.snapshots;
-                self.go_on(following, |before| before.finish(component, "rotated"))
-            }
-            Err(error) => self.stay(error),
-        }
-    }
-
-    /// Ends this file by `end` and goes on in `following`, which remembers what this one lacks.
-    fn go_on(
-        &mut self,
-        mut following: Self,
-        end: impl FnOnce(Self) -> Result<Finished, RecordError>,
-    ) -> Result<(), RecordError> {
-        following.trouble = self.trouble.take();
-        following.earlier = self.earlier.clone();
-        match end(std::mem::replace(self, following)) {
-            Ok(finished) => {
-                self.earlier = Earlier {
-                    failure: finished.failure,
-                    dropped: finished.dropped,
-                };
-                Ok(())
-            }
-            Err(error) if self.options.required => {
-                if let RecordError::Required(failure) = &error {
-                    self.earlier.failure.get_or_insert(failure.clone());
-                }
-                Err(error)
-            }
-            // The file is whole and only its name is not: told at the end.
-            Err(error) => {
-                self.keep(Err(error));
-                Ok(())
-            }
-        }
-    }
-
-    /// No file can follow: a log that is not required ends here.
-    fn stay(&mut self, error: RecordError) -> Result<(), RecordError> {
-        if self.options.required {
-            return Err(error);
-        }
-        self.file.give_up(&error.to_string());
-        Ok(())
-    }
-
-    /// The file that takes over from this one.
-    fn follow(
-        &self,
-        next: Place,
-        component: &Component,
-        reason: &str,
-    ) -> Result<Self, RecordError> {
-        let options = RecordOptions {
-            reason: reason.to_owned(),
-            ..self.options.clone()
-        };
-        let sink = Box::new(next.create()?);
-        let numbers = (reason == "rotated").then(|| self.channels.numbers());
-        Self::start(sink, Some(next), component, options, numbers)
-    }
-
-    /// A call from outside, or the reply to one.
-    ///
-    /// # Errors
-    /// [`RecordError::Required`].
-    pub fn record_command(&mut self, command: &Command) -> Result<(), RecordError> {
-        let channel = self.channels.command(&mut self.file, command);
-        let deterministic = self.options.deterministic;
-        let data = command.encode_to_vec();
-        write(&mut self.file, deterministic, channel, command.time, &data);
-        self.check()
-    }
-
-    /// A line for people; `name` is the part of the program that speaks.
-    ///
-    /// # Errors
-    /// [`RecordError::Required`].
-    pub fn log(
-        &mut self,
-        time: f64,
-        level: LogLevel,
-        name: &str,
-        message: &str,
-    ) -> Result<(), RecordError> {
-        let line = Log {
-            timestamp: Some(timestamp(time)),
-            level: level as i32,
-            message: message.to_owned(),
-            name: name.to_owned(),
-            file: String::new(),
-            line: 0,
-        };
-        let data = line.encode_to_vec();
-        let channel = &mut self.channels.log;
-        write(
-            &mut self.file,
-            self.options.deterministic,
-            channel,
-            time,
-            &data,
-        );
-        self.check()
-    }
-
-    /// A snapshot of the particles now, due or not.
-    ///
-    /// # Errors
-    /// [`RecordError::Required`].
-    pub fn particles(&mut self, component: &Component) -> Result<(), RecordError> {
-        let data = convert::point_cloud(component).encode_to_vec();
-        let channel = &mut self.channels.particles;
-        let time = component.time();
-        write(
-            &mut self.file,
-            self.options.deterministic,
-            channel,
-            time,
-            &data,
-        );
-        self.check()
-    }
-
-    /// The component was reset or restored: ends this file and starts the next (`run-1-0000.mcap`), which carries the
-    /// state it starts from.
-    ///
-    /// # Errors
-    /// As [`Recorder::create`] and [`Recorder::finish`].
-    pub fn record_jump(
-        &mut self,
-        component: &Component,
-        event: AppliedEvent,
-        source: &str,
-    ) -> Result<(), RecordError> {
-        let Some(place) = self.place.clone() else {
-            self.applied(component, event, (component.time(), f64::NAN), source);
-            return self.end_of_step();
-        };
-        let reason = match event {
-            AppliedEvent::Reset => "reset",
-            AppliedEvent::Restore => "restored",
-            _ => "start",
-        };
-        match self.follow(place.jumped(), component, reason) {
-            Ok(following) => self.go_on(following, |before| before.close(BTreeMap::new(), reason)),
-            Err(error) => self.stay(error),
-        }
-    }
-
     /// The first failed write, if there was one; what came after it is not in its file.
     #[must_use]
     pub fn failure(&self) -> Option<Failure> {
@@ -476,97 +305,10 @@ impl Recorder {
         self.earlier.dropped + self.file.counts().dropped
     }
 
-    /// Writes the end (reason, steps, hash of the state, drops) and the summary, and gives the file its final name.
-    /// A log that failed before keeps the name that ends in `.part`.
-    ///
-    /// # Errors
-    /// [`RecordError::Required`] if the log is required and not whole, [`RecordError::Rename`]; what
-    /// [`Recorder::take_trouble`] would give.
-    pub fn finish(mut self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
-        self.remember(component);
-        let state = [
-            ("mode".to_owned(), format!("{:?}", component.mode())),
-            ("state_hash".to_owned(), component.state_hash()),
-        ];
-        let trouble = self.trouble.take();
-        let finished = self.close(state.into(), reason)?;
-        trouble.map_or(Ok(finished), Err)
-    }
-
-    /// Ends the file of a component that has been reset, or gone to a state that is not initialised: it does not tell
-    /// where the component went.
-    ///
-    /// # Errors
-    /// As [`Recorder::finish`].
-    pub fn end(mut self, reason: &str) -> Result<Finished, RecordError> {
-        let trouble = self.trouble.take();
-        let finished = self.close(BTreeMap::new(), reason)?;
-        trouble.map_or(Ok(finished), Err)
-    }
-
-    /// Removes the file: nothing happened that it could tell.
-    ///
-    /// # Errors
-    /// [`RecordError::Create`] with what the system said.
-    pub fn discard(mut self) -> Result<(), RecordError> {
-        self.file.give_up("discarded");
-        match &self.place {
-            Some(place) => {
-                let path = place.part();
-                std::fs::remove_file(&path).map_err(|source| RecordError::Create { path, source })
-            }
-            None => Ok(()),
-        }
-    }
-
-    /// How many files of other epochs come before the one that follows after a reset; for [`Recorder::create_after`].
-    #[must_use]
-    pub fn next_epoch(&self) -> u32 {
-        self.place.as_ref().map_or(0, |place| place.epoch + 1)
-    }
-
     /// Whether the scene, or whoever made this log, requires it.
     #[must_use]
     pub fn is_required(&self) -> bool {
         self.options.required
-    }
-
-    fn close(
-        mut self,
-        state: BTreeMap<String, String>,
-        reason: &str,
-    ) -> Result<Finished, RecordError> {
-        let last = self.last;
-        if !self.pending.is_empty() {
-            self.leave_pending();
-        }
-        let mut end = owned([
-            ("reason", reason.to_owned()),
-            ("time", last.time.to_string()),
-            ("time_bits", format!("{:016x}", last.time.to_bits())),
-            ("communication_steps", last.communication_steps.to_string()),
-            ("steps", last.steps.to_string()),
-            ("dropped", self.file.counts().dropped.to_string()),
-            ("restored", self.restored.to_string()),
-        ]);
-        end.extend(state);
-        self.file.metadata("end", end);
-        let (counts, failure) = self.file.finish();
-        let first = self.earlier.failure.or_else(|| failure.clone());
-        if let (Some(first), true) = (&first, self.options.required) {
-            return Err(RecordError::Required(first.clone()));
-        }
-        let path = match (&self.place, &failure) {
-            (Some(place), None) => Some(place.rename()?),
-            (Some(place), Some(_)) => Some(place.part()),
-            (None, _) => None,
-        };
-        Ok(Finished {
-            path,
-            messages: counts.written,
-            dropped: self.earlier.dropped + counts.dropped,
-            failure: first,
-        })
     }
 
     fn remember(&mut self, component: &Component) {
@@ -577,140 +319,4 @@ impl Recorder {
             steps: figures.steps,
         };
     }
-
-    fn scene(&mut self, update: &SceneUpdate, time: f64) {
-        let update = update.encode_to_vec();
-        let channel = &mut self.channels.scene;
-        write(
-            &mut self.file,
-            self.options.deterministic,
-            channel,
-            time,
-            &update,
-        );
-    }
-
-    fn applied(
-        &mut self,
-        component: &Component,
-        event: AppliedEvent,
-        (t, h): (f64, f64),
-        source: &str,
-    ) {
-        let step = match event {
-            AppliedEvent::Initialize => 0,
-            _ => component.statistics().communication_steps,
-        };
-        self.write_applied(event, step, (t, h), &[], source);
-    }
-
-    /// As `applied`, of a call about a saved state.
-    fn stated(
-        &mut self,
-        component: &Component,
-        event: AppliedEvent,
-        times: (f64, f64),
-        state: &[u8],
-        source: &str,
-    ) {
-        let step = component.statistics().communication_steps;
-        self.write_applied(event, step, times, state, source);
-    }
-
-    /// Inputs that were set after the last step, and that no step will use.
-    fn leave_pending(&mut self) {
-        let last = self.last;
-        let times = (last.time, 0.0);
-        self.write_applied(AppliedEvent::Set, last.communication_steps, times, &[], "");
-    }
-
-    fn write_applied(
-        &mut self,
-        event: AppliedEvent,
-        step: u64,
-        (t, h): (f64, f64),
-        state: &[u8],
-        source: &str,
-    ) {
-        let mut applied = self.pending.applied(event, step, (t, h), source);
-        applied.state = state.to_vec();
-        let data = applied.encode_to_vec();
-        let channel = &mut self.channels.applied;
-        let deterministic = self.options.deterministic;
-        write(&mut self.file, deterministic, channel, t, &data);
-    }
-
-    /// Outputs, figures, frames of the gates and, when due, particles.
-    fn outputs(
-        &mut self,
-        component: &Component,
-        report: Option<&StepReport>,
-    ) -> Result<(), RecordError> {
-        self.remember(component);
-        let (time, deterministic) = (self.last.time, self.options.deterministic);
-        let step = self.last.communication_steps;
-        for (output, channel) in &mut self.channels.outputs {
-            let data = convert::gauge(component, output, step, channel.next)?.encode_to_vec();
-            write(&mut self.file, deterministic, channel, time, &data);
-        }
-        let stats = &mut self.channels.stats;
-        let data = convert::step_stats(component, report, stats.next).encode_to_vec();
-        write(&mut self.file, deterministic, stats, time, &data);
-        for frame in convert::gate_frames(component)? {
-            let channel = &mut self.channels.frames;
-            write(
-                &mut self.file,
-                deterministic,
-                channel,
-                time,
-                &frame.encode_to_vec(),
-            );
-        }
-        if self.particles_due(time) {
-            self.particles(component)?;
-        }
-        Ok(())
-    }
-
-    /// Whether a snapshot's time has come since the last one; several that a long step has passed give one.
-    fn particles_due(&mut self, time: f64) -> bool {
-        let every = self.options.particles_every;
-        if every <= 0.0 {
-            return false;
-        }
-        // A billionth of the interval is allowed for, as communication points are sums of rounded steps.
-        let due = ((time - self.first_time) / every + 1e-9).floor() as u64 + 1;
-        let come = due > self.snapshots;
-        self.snapshots = due;
-        come
-    }
-
-    fn end_of_step(&mut self) -> Result<(), RecordError> {
-        if self.options.deterministic {
-            self.file.flush();
-        }
-        self.check()
-    }
-
-    fn check(&self) -> Result<(), RecordError> {
-        match self.file.failure() {
-            Some(failure) if self.options.required => Err(RecordError::Required(failure)),
-            _ => Ok(()),
-        }
-    }
-}
-
-fn write(file: &mut LogFile, deterministic: bool, channel: &mut Channel, time: f64, data: &[u8]) {
-    let log_time = nanoseconds(time);
-    let publish_time = if deterministic {
-        log_time
-    } else {
-        // A clock before 1970 gives 0; nothing depends on it.
-        let since = SystemTime::now().duration_since(UNIX_EPOCH);
-        since.map_or(0, |d| u64::try_from(d.as_nanos()).unwrap_or(u64::MAX))
-    };
-    // MCAP counts in 32 bits and says that numbers may come round.
-    let sequence = channel.next as u32;
-    file.message(time, channel.id, sequence, (log_time, publish_time), data);
-    channel.next += 1;
 }
