@@ -3,6 +3,9 @@
 use super::points::WallPoints;
 use crate::math::{Vector, add, dot, norm, scale, sub};
 
+/// Share of a point below which it is hidden [1].
+const HIDDEN: f64 = 1e-9;
+
 /// Geometry of a plate: face from `from` along `axis`, body behind it.
 #[derive(Clone, Debug)]
 pub struct Plate<const D: usize> {
@@ -121,8 +124,9 @@ impl<const D: usize> Plate<D> {
             let i = self.first + n;
             walls.position[i] = add(&add(&self.from, &scale(s, &self.axis)), offset);
             walls.velocity[i] = velocity;
-            // What has slid past the end is hidden, the last point by its share.
-            walls.weight[i] = ((self.length - s) / self.step + 0.5).clamp(0.0, 1.0);
+            // What has slid past the end is hidden, the last point by its share; of that, rounding is nothing.
+            let share = ((self.length - s) / self.step + 0.5).clamp(0.0, 1.0);
+            walls.weight[i] = if share < HIDDEN { 0.0 } else { share };
         }
     }
 

@@ -174,7 +174,7 @@ impl<const D: usize> Solver<D> {
                     continue;
                 }
                 let tau = self.viscous.stress(i);
-                let leant = seen.map_or([0.0; D], |w| self.leant(state, i, &w.lean, dt));
+                let leant = seen.map_or([0.0; D], |w| self.leant(state, i, &w.lean));
                 for &w in block.wall_row(row) {
                     let group = self.walls.group[w as usize] as usize;
                     let weight = self.walls.weight[w as usize];
@@ -202,9 +202,13 @@ impl<const D: usize> Solver<D> {
                     let drag =
                         -2.0 * share * c * dot(&pg, &sub(vi, &self.walls.velocity[w as usize]));
                     force = add(&force, &scale(drag, &pg));
-                    // Each point's part of K (a - g), as it was counted.
-                    let n = self.wall_normal(xi, w, state);
-                    let mut part = scale(-vf * dot(&n, &x).powi(2), &seen(leant));
+                    let mut part = [0.0; D];
+                    if self.has_fluids && projection.is_none() {
+                        // Each point's part of K, as it was counted.
+                        let n = self.wall_normal(xi, w, state);
+                        let along = sub(&leant, &scale(dot(&n, &leant), &n));
+                        part = scale(-vf * dot(&n, &x).powi(2), &along);
+                    }
                     if barrier > 0.0 {
                         let mut away = self.barrier.slope(&x, r, weight);
                         if let Some((x, r)) = self.wall_image(xi, w) {

@@ -151,15 +151,13 @@ impl<const D: usize> Solver<D> {
             let rubs =
                 projection.is_some_and(|n| self.touch(contacts, first_contact, (i, wall), &n, &g));
             face = face.with(projection.filter(|_| rubs));
-            if is_fluid {
-                let n = projection.unwrap_or_else(|| self.wall_normal(xi, wall, state));
+            if is_fluid && projection.is_none() {
+                let n = self.wall_normal(xi, wall, state);
                 let part = -vf * dot(&n, &x).powi(2);
                 for a in 0..D {
-                    for b in 0..D {
-                        let whole = f64::from(u8::from(a == b));
-                        w.lean[a][b] += part * projection.map_or(whole, |n| n[a] * n[b]);
-                    }
+                    w.lean[a][a] += part;
                 }
+                add_outer(&mut w.lean, -part, &n, &n);
             }
             for k in 0..D {
                 w.s[k] += g[k];

@@ -1,22 +1,23 @@
-//! Fluids at walls: their stress goes on into the wall as momentum says (docs/theory.md, W4).
+//! Fluids at walls without slip: their shear stress goes on into the wall as momentum says (docs/theory.md, W4).
 //!
-//! A wall point takes the stress of the particle that sees it. Across the face grad sigma.n = rho (a - g), so that it would be
-//! sigma_i.n + (x_w - x_i).n rho (a - g), which is worth a part K of the particle's own momentum:
+//! A wall point takes the stress of the particle that sees it. Across the face the shear traction t changes by
+//! dt/dn = rho (a - g)_t + grad_t p, which is what viscous forces leave of momentum along the wall: rho (a - a*)_t, a* the
+//! acceleration of gravity and pressure. Carried on from x_i to x_w it is worth a part K of the particle's own momentum:
 //!
-//!   m (I - K) (a - g) = F,   K = sum_walls P |F_iw| V (n.x_iw)^2,                                         (W4)
+//!   m (I - K) (a - a*) = F,   K = sum_walls (I - n n^T) |F_iw| V (n.x_iw)^2,                               (W4)
 //!
-//! F the surface forces without it, P = n n^T at free slip (a traction has no part along such a wall) and I at no slip. In the
-//! first row of a flat wall K is 0.5 P. Without it the sum of stresses that a wall gets is that of about 0.7 dp inside, and
-//! rows there shear too fast: by 5 % of the stress at 20 rows, which is a fourth of a yield stress fluid's rate. The wall
-//! gets m K (g - a) beside -F, so that momentum balances.
+//! F the viscous force without it. In the first row of a flat wall K is 0.5 along the wall. Without it the sum of stresses that
+//! a wall gets is that of about 0.7 dp inside, and rows there shear too fast: by 5 % of the stress at 20 rows, which is a
+//! fourth of a yield stress fluid's rate. The wall gets m K (a* - a) beside -F, so that momentum balances.
 //!
-//! Only fluids: in sand both pressure and friction would gain by the same factor.
+//! Pressure has no part in it, along or across: its force is the adjoint of div v, and what it does to the velocity comes out
+//! of the density. A pressure force 1/(1 - K) times that takes energy from a wall that stands still. Where nothing slips along
+//! a wall only; fluids only: in sand friction would gain and pressure would not.
 
-use crate::math::{Tensor, Vector, apply, inverse, scale, trace};
+use crate::math::{Tensor, Vector, apply, scale, trace};
 use crate::state::State;
 
 use super::Solver;
-use super::pair::Block;
 
 /// Most of a particle's momentum that walls are given [1]: corners and slits would ask for all of it.
 const MOST: f64 = 0.8;
@@ -51,46 +52,8 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Divides the velocity changes that surface forces made by I - K; gravity acts on all.
-    pub(super) fn lean_on_walls(
-        &self,
-        state: &State<D>,
-        dt: f64,
-        block: &Block<D>,
-        first: usize,
-        out: &mut [super::pressure::Prediction<D>],
-    ) {
-        if self.lean.is_empty() {
-            return;
-        }
-        for w in &block.wall_rows {
-            let i = first + w.row as usize;
-            let k = &self.lean[i];
-            if trace(k) <= 0.0 {
-                continue;
-            }
-            let rest: Tensor<D> = std::array::from_fn(|a| {
-                std::array::from_fn(|b| f64::from(u8::from(a == b)) - k[a][b])
-            });
-            let o = &mut out[w.row as usize];
-            let free: Vector<D> =
-                std::array::from_fn(|a| state.grains.velocity[i][a] + dt * self.gravity[a]);
-            let change: Vector<D> = std::array::from_fn(|a| o.velocity[a] - free[a]);
-            let change = apply(&inverse(&rest), &change);
-            for a in 0..D {
-                o.velocity[a] = free[a] + change[a];
-            }
-        }
-    }
-
-    /// m (a - g) dt [N s], times what of K was kept: what each wall point's part of K makes an impulse of.
-    pub(super) fn leant(
-        &self,
-        state: &State<D>,
-        i: usize,
-        whole: &Tensor<D>,
-        dt: f64,
-    ) -> Vector<D> {
+    /// m (v - v*) [N s], times what of K was kept: what each wall point's part of K makes an impulse of.
+    pub(super) fn leant(&self, state: &State<D>, i: usize, whole: &Tensor<D>) -> Vector<D> {
         let Some(k) = self.lean.get(i) else {
             return [0.0; D];
         };
@@ -100,10 +63,7 @@ impl<const D: usize> Solver<D> {
             0.0
         };
         let m = kept * state.grains.mass[i];
-        std::array::from_fn(|a| {
-            let change = self.viscous.velocity[i][a] - state.grains.velocity[i][a];
-            m * (change - dt * self.gravity[a])
-        })
+        std::array::from_fn(|a| m * (self.viscous.velocity[i][a] - self.prediction[i].velocity[a]))
     }
 }
 

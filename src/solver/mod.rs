@@ -207,8 +207,8 @@ pub struct Solver<const D: usize> {
     flows: Vec<f64>,
     /// Part of each particle's momentum that walls are given; empty in scenes without fluids.
     lean: Vec<crate::math::Tensor<D>>,
-    /// Where surfaces are; empty in scenes that do not shift.
-    openness: Vec<shift::Openness<D>>,
+    /// Smallest eigenvalue of each particle's moment matrix, 1 far from surfaces; empty in scenes that do not shift [1].
+    openness: Vec<f64>,
     /// Shift velocity of each particle in the step [m/s]; empty in scenes that do not shift.
     shift: Vec<Vector<D>>,
     viscosity: Vec<f64>,

@@ -4,19 +4,21 @@
 //!
 //!   x_i <- x_i - dp^2 grad C_i,   rho_i by the weight of what lies higher or lower.                           (S1)
 //!
-//! What is at a surface stays where it is: C falls there as it should.
+//! What is at a surface stays where it is: C falls there as it should. What was moved into a wall, corners above all, so that (W5)
+//! would throw it out, goes out of it first.
 
-use crate::math::{Vector, dot, norm, scale};
+use crate::math::{Vector, add, dot, norm, scale};
 use crate::state::State;
 
-use super::shift::{Openness, SURFACE};
+use super::shift::SURFACE;
 use super::{Scheme, Solver};
 
 /// Sweeps. What is as long as the kernel's width decays by a tenth in each; what is shorter presses little.
 const SWEEPS: u32 = 40;
 
-/// Most of a move, over the spacing [1].
+/// Most of a move, over the spacing [1]; and the move of what is behind the surface of a wall.
 const LONGEST: f64 = 0.1;
+const OUT: f64 = 0.02;
 
 impl<const D: usize> Solver<D> {
     /// Evens a fresh state; nothing where the lattice was left as it is, of rings, and in the reference schemes.
@@ -47,7 +49,7 @@ impl<const D: usize> Solver<D> {
     /// The step of each particle [m].
     fn even_out(&mut self, state: &State<D>) -> Vec<Vector<D>> {
         let n = state.grains.len();
-        let mut open = vec![Openness::INSIDE; n];
+        let mut open = vec![1.0; n];
         self.workers
             .blocks_read(&self.lists.blocks, &mut open, |block, first, out| {
                 for (row, o) in out.iter_mut().enumerate() {
@@ -62,9 +64,9 @@ impl<const D: usize> Solver<D> {
                 for (row, o) in out.iter_mut().enumerate() {
                     let wall = walls.next_if(|w| w.row as usize == row);
                     let mut slope = wall.map_or([0.0; D], |w| w.s);
-                    let mut least = open[first + row].lambda;
+                    let mut least = open[first + row];
                     block.for_each_pair(row, |j, _, g| {
-                        least = least.min(open[j as usize].lambda);
+                        least = least.min(open[j as usize]);
                         for k in 0..D {
                             slope[k] += g[k];
                         }
@@ -75,6 +77,9 @@ impl<const D: usize> Solver<D> {
                         if size > 0.0 {
                             *o = scale((LONGEST * dp / size).min(1.0), &step);
                         }
+                    }
+                    if let Some(w) = wall.filter(|w| w.barrier > 0.0) {
+                        *o = add(o, &scale(OUT * dp / norm(&w.push), &w.push));
                     }
                 }
             });

@@ -27,7 +27,8 @@ pub(super) struct WallRow<const D: usize> {
     /// 4 k (N - 1/2) of (W5) [m^2/s^2] and its acceleration [m/s^2]; 0 in front of walls.
     pub(super) barrier: f64,
     pub(super) push: Vector<D>,
-    /// Of fluids: sum |F| V (n.x)^2 n n^T, how far their stress is carried on into walls (docs/theory.md, W4); else 0.
+    /// Of fluids: sum (I - n n^T) |F| V (n.x)^2 over points without slip, how far their shear stress is carried on into walls
+    /// (docs/theory.md, W4); else 0.
     pub(super) lean: Tensor<D>,
 }
 

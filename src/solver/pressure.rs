@@ -71,7 +71,6 @@ impl<const D: usize> Solver<D> {
                     }
                 }
                 block.wall_rows = rows;
-                self.lean_on_walls(state, dt, block, first, out);
             });
         self.loads = loads;
         self.lists.blocks = blocks;
