@@ -163,6 +163,9 @@ pub(crate) trait Engine: Send {
     /// Wall and gate particles where they are now, for pictures [m].
     fn wall_points(&self) -> Vec<[f64; 3]>;
 
+    /// Share of a full point of each of them [1].
+    fn wall_shares(&self) -> Vec<f64>;
+
     /// How long walls that move as a whole have moved [s].
     fn wall_time(&self) -> f64;
 

@@ -379,6 +379,13 @@ impl Component {
         self.engine.wall_points()
     }
 
+    /// Share of a full point of each of [`Component::wall_points`], over 0 to 1 and a little more where points lie further
+    /// apart than particles [1]: the last point of a plate that slides past its end counts by what is left of it.
+    #[must_use]
+    pub fn wall_shares(&self) -> Vec<f64> {
+        self.engine.wall_shares()
+    }
+
     /// How long walls that move as a whole have moved: since the start, for pictures [s].
     #[must_use]
     pub fn wall_time(&self) -> f64 {

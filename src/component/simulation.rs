@@ -454,6 +454,11 @@ impl<const D: usize> Engine for Simulation<D> {
             .collect()
     }
 
+    fn wall_shares(&self) -> Vec<f64> {
+        let weights = self.solver.walls().weight.iter().copied();
+        weights.filter(|w| *w > 0.0).collect()
+    }
+
     fn wall_time(&self) -> f64 {
         self.state.pose.now
     }

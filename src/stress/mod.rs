@@ -13,6 +13,7 @@ pub mod campaign;
 pub mod case;
 pub mod checks;
 mod dice;
+mod forces;
 pub mod generate;
 pub mod limits;
 mod others;

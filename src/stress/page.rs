@@ -1,14 +1,16 @@
 //! docs/stability.md from stored runs: what was tried, what failed and its fix, the map of limits, broken builds.
 
+mod campaign;
+mod map;
+
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::limits::{LimitsRun, Sweep};
+use super::limits::LimitsRun;
 use super::store::{self, StressRun};
-use super::{Case, Check, Error, generate};
+use super::{Case, Check, Error};
 use crate::bench::Machine;
-use crate::validate::report::number;
 
 /// First line of the page.
 pub const MADE: &str =
@@ -108,11 +110,11 @@ pub fn kept(folder: &Path) -> Result<Vec<Kept>, Error> {
 pub fn text(stored: &Stored) -> String {
     let parts = [
         opening(stored),
-        checks(),
-        kinds(stored),
-        bounds(stored),
-        cases(stored),
-        map(&stored.limits),
+        campaign::checks(),
+        campaign::kinds(stored),
+        campaign::bounds(stored),
+        campaign::cases(stored),
+        map::map(&stored.limits),
         broken(&stored.broken),
         faults(),
         missing(),
@@ -184,224 +186,6 @@ fn opening(stored: &Stored) -> String {
         machine(&run.machine),
         run.count,
         run.jobs,
-    )
-}
-
-fn checks() -> String {
-    let rows: Vec<Vec<String>> = Check::ALL
-        .iter()
-        .map(|(_, name, what)| vec![format!("`{name}`"), (*what).to_owned()])
-        .collect();
-    format!(
-        "## Checks\n\n{}\n\nEnergy: what the pressure may give is 1 % of M g H + the kinetic energy at the start (elastic energy at \
-         the scheme's Mach number is gH/200 a kilogram), and half of phi_max/phi_min - 1 of it where the material has a grain \
-         size: by (M3) sheared material loosens and lifts what lies above it, which no friction pays for. Not checked where a \
-         wall turns (its work needs a torque) or gravity has a part along a periodic side.",
-        table(&["check", "what it asks"], &rows)
-    )
-}
-
-fn kinds(stored: &Stored) -> String {
-    let about = |name: &str| generate::by_name(name).map_or("", |k| k.about);
-    let rows: Vec<Vec<String>> = stored
-        .run
-        .kinds
-        .iter()
-        .map(|k| {
-            let f = &k.figures;
-            vec![
-                k.kind.clone(),
-                about(&k.kind).to_owned(),
-                k.scenes.to_string(),
-                if k.failed > 0 {
-                    format!("**{}**", k.failed)
-                } else {
-                    "0".to_owned()
-                },
-                f.internal_steps.to_string(),
-                f.particles.to_string(),
-                format!("{:.1}", f.cpu),
-                k.slept.to_string(),
-            ]
-        })
-        .collect();
-    let head = [
-        "kind",
-        "what it is",
-        "scenes",
-        "failed",
-        "internal steps",
-        "most particles",
-        "CPU s",
-        "slept",
-    ];
-    format!("## Scenes by kind\n\n{}", table(&head, &rows))
-}
-
-fn bounds(stored: &Stored) -> String {
-    let most = |of: &dyn Fn(&super::Figures) -> f64| {
-        stored
-            .run
-            .kinds
-            .iter()
-            .map(|k| of(&k.figures))
-            .fold(0.0, f64::max)
-    };
-    let rows = [
-        (
-            "growth of energy over what was given, of M g H",
-            most(&|f| f.energy_excess),
-            "0.01 and dilatancy",
-        ),
-        (
-            "miss of momentum, of what is allowed",
-            most(&|f| f.momentum_error),
-            "1",
-        ),
-        ("speed, of what is allowed", most(&|f| f.speed_share), "1"),
-        (
-            "share of a particle's neighbourhood that is wall",
-            most(&|f| f.deepest),
-            "0.9",
-        ),
-        (
-            "centre of mass of a rest, over dp",
-            most(&|f| f.creep),
-            "0.01",
-        ),
-    ];
-    let rows: Vec<Vec<String>> = rows
-        .iter()
-        .map(|(what, value, allowed)| {
-            vec![(*what).to_owned(), number(*value), (*allowed).to_owned()]
-        })
-        .collect();
-    format!(
-        "The worst of all scenes, failed ones included:\n\n{}",
-        table(&["figure", "worst", "allowed"], &rows)
-    )
-}
-
-fn cases(stored: &Stored) -> String {
-    let rows = |kept: &[Kept], folder: &str| -> Vec<Vec<String>> {
-        kept.iter()
-            .map(|k| {
-                let said = k.head.iter().skip(1).map(|line| {
-                    let mut line = line.replace('|', "/");
-                    if let Some((at, _)) = line.char_indices().nth(160) {
-                        line.truncate(at);
-                        line.push_str("...");
-                    }
-                    line
-                });
-                vec![
-                    format!("[{0}](../{folder}/{0})", k.name),
-                    said.take(1).collect::<Vec<_>>().join(" "),
-                    k.case.drive.note.clone(),
-                ]
-            })
-            .collect()
-    };
-    format!(
-        "## Cases\n\nWhat failed on the way, made smaller by the program. They pass now and are part of the test command:\n\n{}\n\n\
-         These still fail, and the test command says so as soon as one of them does not:\n\n{}",
-        table(
-            &["case", "it said", "why, and the fix"],
-            &rows(&stored.fixed, "cases/stress")
-        ),
-        table(
-            &["case", "it says", "what is known"],
-            &rows(&stored.open, "cases/stress/open")
-        )
-    )
-}
-
-fn map(limits: &LimitsRun) -> String {
-    let mut text = format!(
-        "## Limits\n\nOne setting swept, all else by default, in two scenes of 240 to 300 particles: a column of sand of a = 0.9 that \
-         collapses (0.4 s, 4.2 sqrt(H/g)), and a level fill in a box that must stay at rest with sleep off (0.4 s). *Reach* is \
-         the outermost particle at the end [m], *kinetic* the kinetic energy at the end over M g H, *creep* how far the fill's centre \
-         of mass moved in the second half over dp. Measured on {}.",
-        machine(&limits.machine)
-    );
-    for sweep in &limits.sweeps {
-        text.push_str(&format!(
-            "\n\n**{}**, {} ({}): {}\n\n{}",
-            sweep.scene,
-            sweep.key,
-            sweep.about,
-            distance(sweep),
-            points(sweep)
-        ));
-    }
-    text
-}
-
-/// How far the default is from where it breaks.
-fn distance(sweep: &Sweep) -> String {
-    let fine = |p: &&super::limits::Point| p.failed.is_empty();
-    let ok: Vec<f64> = sweep.points.iter().filter(fine).map(|p| p.value).collect();
-    let below = sweep
-        .points
-        .iter()
-        .filter(|p| p.value < sweep.default && !p.failed.is_empty())
-        .map(|p| p.value)
-        .fold(f64::NEG_INFINITY, f64::max);
-    let above = sweep
-        .points
-        .iter()
-        .filter(|p| p.value > sweep.default && !p.failed.is_empty())
-        .map(|p| p.value)
-        .fold(f64::INFINITY, f64::min);
-    let edge = |limit: f64| {
-        if limit.is_finite() {
-            format!("breaks at {}", number(limit))
-        } else {
-            "does not break".to_owned()
-        }
-    };
-    let passes = ok.len();
-    format!(
-        "{passes} of {} values pass; the default {} {} below and {} above",
-        sweep.points.len(),
-        number(sweep.default),
-        edge(below),
-        edge(above)
-    )
-}
-
-fn points(sweep: &Sweep) -> String {
-    let rows: Vec<Vec<String>> = sweep
-        .points
-        .iter()
-        .map(|p| {
-            let f = &p.figures;
-            vec![
-                number(p.value),
-                if p.failed.is_empty() {
-                    "passes".to_owned()
-                } else {
-                    format!("**{}**", p.failed.join(", "))
-                },
-                number(f.reach),
-                format!("{:.1e}", f.kinetic),
-                format!("{:.1e}", f.creep),
-                f.internal_steps.to_string(),
-                format!("{:.2}", f.cpu),
-            ]
-        })
-        .collect();
-    table(
-        &[
-            "value",
-            "checks",
-            "reach [m]",
-            "kinetic",
-            "creep",
-            "steps",
-            "CPU s",
-        ],
-        &rows,
     )
 }
 

@@ -192,10 +192,11 @@ fn ridden(case: &Case, scene: &Scene, bounds: &Bounds) -> Outcome {
 }
 
 /// The check of energy once more with a gate's work taken force by force: over a long communication step only the mean
-/// force on a plate is known, and it need not be the one while the plate moved.
+/// force on a plate is known, and it need not be the one while the plate moved. Each way counts with the mean of the forces
+/// before and after it.
 fn energy_in_pieces(case: &Case, scene: &Scene, bounds: &Bounds) -> Option<Failure> {
     let mut ride = Ride::new(case, scene, bounds.cpu).ok()?.in_pieces();
-    let mut witness = Witness::new(&ride, &case.drive);
+    let mut witness = Witness::new(&ride, &case.drive).in_pieces();
     loop {
         let (start, wanted) = (ride.component.time(), ride.wanted());
         match ride.next()? {

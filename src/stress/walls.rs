@@ -16,11 +16,12 @@ pub(super) fn length(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 /// Largest share of any particle's neighbourhood that is wall or gate, by a Wendland C2 kernel as wide as a spacing, and
-/// where that is; `axes` is 2 or 3. What is further from every point of a wall than the middle of a cell of them counts as
-/// on the surface at most.
+/// where that is: N of (W5). `walls` are points with the share of a full one that each is, so that the end of a plate that
+/// has slid behind a wall's end is not counted twice; `axes` is 2 or 3. What is further from every point of a wall than the
+/// middle of a cell of them counts as on the surface at most.
 pub(super) fn deepest(
     view: &ParticleView,
-    walls: &[[f64; 3]],
+    walls: &[([f64; 3], f64)],
     spacing: f64,
     axes: usize,
 ) -> (f64, [f32; 3]) {
@@ -32,12 +33,12 @@ pub(super) fn deepest(
     for position in &view.position {
         let at = position.map(f64::from);
         let (mut share, mut nearest) = (0.0, f64::INFINITY);
-        for wall in walls {
+        for (wall, part) in walls {
             let square: f64 = (0..3).map(|k| (at[k] - wall[k]).powi(2)).sum();
             let q = square.sqrt() / spacing;
             nearest = nearest.min(q);
             if q < 2.0 {
-                share += scale * (1.0 - 0.5 * q).powi(4) * (1.0 + 2.0 * q);
+                share += part * scale * (1.0 - 0.5 * q).powi(4) * (1.0 + 2.0 * q);
             }
         }
         if nearest > CELL {
@@ -80,7 +81,7 @@ mod tests {
         let rows = (0..4).flat_map(|row| {
             (-8..=8).map(move |i| [0.1 * f64::from(i), -0.05 - 0.1 * f64::from(row), 0.0])
         });
-        let walls: Vec<[f64; 3]> = rows.collect();
+        let mut walls: Vec<([f64; 3], f64)> = rows.map(|x| (x, 1.0)).collect();
         let share = |y: f32| {
             let view = ParticleView {
                 position: vec![[0.3, 9.0, 0.0], [0.0, y, 0.0]],
@@ -92,6 +93,14 @@ mod tests {
         assert!((share(0.0).0 - 0.5).abs() < 0.02);
         assert!(share(-0.05).0 < MOST_WALL + 0.005 && share(-0.075).0 > MOST_WALL);
         assert_eq!(share(-0.1).1, [0.0, -0.1, 0.0]);
+        // A full row beside another one's end, where only a hundredth of it is left, is one row.
+        let before = share(-0.02).0;
+        walls.push(([0.0, -0.05, 0.0], 0.01));
+        let view = ParticleView {
+            position: vec![[0.0, -0.02, 0.0]],
+            ..ParticleView::default()
+        };
+        assert!((deepest(&view, &walls, 0.1, 2).0 - before).abs() < 0.01);
     }
 
     #[test]

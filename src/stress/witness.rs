@@ -1,14 +1,16 @@
 //! Looks at a component after every communication step and holds it against the checks.
 
-use crate::component::{Component, MassLedger, Totals, ValueReference, VariableTable};
-use crate::scene::{ForceTarget, GaugeKind, InputTarget, Scene};
-use crate::solver::Scheme;
+mod motion;
+mod rests;
 
+use crate::component::{Component, MassLedger, Totals, ValueReference, VariableTable};
+use crate::scene::{InputTarget, Scene};
+
+use super::Drive;
 use super::balance::{Balance, Before};
 use super::checks::{Check, Failure};
 use super::ride::{Done, Ride};
 use super::run::Figures;
-use super::{Drive, walls};
 
 /// Share of a communication step's impulses by which momentum may miss them.
 const MOMENTUM: f64 = 1e-4;
@@ -81,6 +83,12 @@ impl<'a> Witness<'a> {
                 ..Figures::default()
             },
         }
+    }
+
+    /// For communication steps of about an internal one: see [`Balance::in_pieces`].
+    pub(super) fn in_pieces(mut self) -> Self {
+        self.balance = self.balance.in_pieces();
+        self
     }
 
     fn fail(&mut self, check: Check, time: f64, what: impl std::fmt::Display) {
@@ -218,192 +226,6 @@ impl<'a> Witness<'a> {
         }
     }
 
-    fn check_speed(&mut self, component: &Component, time: f64) {
-        let allowed = 3.0 * self.balance.speed(time);
-        let fastest = component.statistics().max_speed;
-        self.figures.speed_share = self.figures.speed_share.max(fastest / allowed);
-        if fastest > allowed {
-            self.fail(
-                Check::Speed,
-                time,
-                format!("a particle at {fastest:.3} m/s, allowed {allowed:.3} m/s"),
-            );
-        }
-    }
-
-    fn check_leak(&mut self, component: &Component, time: f64) {
-        let spacing = self.scene.numerics.spacing;
-        let view = component.particles();
-        let axes = self.scene.dimension.axes();
-        let (share, place) = walls::deepest(&view, &component.wall_points(), spacing, axes);
-        self.figures.deepest = self.figures.deepest.max(share);
-        if share > walls::MOST_WALL {
-            self.fail(
-                Check::Leak,
-                time,
-                format!(
-                    "a particle at {place:?} m, whose neighbourhood is wall by {share:.2}, allowed {}",
-                    walls::MOST_WALL
-                ),
-            );
-        }
-        if let Some((place, depth)) = walls::outside(&view, &self.drive.inside, spacing) {
-            self.fail(
-                Check::Leak,
-                time,
-                format!("a particle at {place:?} m, {depth:.2} dp outside the container"),
-            );
-        }
-    }
-
-    fn check_step_size(&mut self, done: &Done, time: f64) {
-        let n = &self.scene.numerics;
-        if n.scheme != Scheme::Implicit || self.slept {
-            return;
-        }
-        let h = n.smoothing_ratio * n.spacing;
-        let acoustic = n.courant * h / n.sound_speed;
-        let motion = 0.2 * h / (6.0 * self.balance.speed(time)).max(f64::MIN_POSITIVE);
-        let least = acoustic.min(motion).min(done.asked) / 3.0;
-        let share = done.report.smallest_step / acoustic.min(done.asked);
-        self.figures.least_step = if self.figures.least_step == 0.0 {
-            share
-        } else {
-            self.figures.least_step.min(share)
-        };
-        if done.report.smallest_step < least {
-            self.fail(
-                Check::StepSize,
-                time,
-                format!(
-                    "an internal step of {:e} s (bound by {}), allowed {least:e} s",
-                    done.report.smallest_step,
-                    done.report.bound_by.name()
-                ),
-            );
-        }
-    }
-
-    /// A sleeping scene wakes when it is told something, and only then.
-    fn check_sleep(
-        &mut self,
-        component: &Component,
-        now: &Before,
-        wanted: &[(InputTarget, f64)],
-        time: f64,
-    ) {
-        if !self.slept {
-            return;
-        }
-        let told = wanted.iter().any(|(input, value)| match input {
-            InputTarget::GateOpening(i) => (self.before.openings[*i] - value).abs() > 1e-6,
-            InputTarget::InflowRate(_) => *value > 0.0,
-        });
-        let worked = component.statistics().steps > self.steps;
-        if told && !worked {
-            self.fail(
-                Check::Sleep,
-                time,
-                format!("told {wanted:?}, it slept on: no internal step was done"),
-            );
-        }
-        if !told && (worked || now.totals.moment != self.before.totals.moment) {
-            self.fail(
-                Check::Sleep,
-                time,
-                "nothing was told and it did not sleep on".to_owned(),
-            );
-        }
-    }
-
-    fn check_gates(
-        &mut self,
-        now: &Before,
-        done: &Done,
-        wanted: &[(InputTarget, f64)],
-        h: f64,
-        time: f64,
-    ) {
-        let hs = self.scene.numerics.smoothing_ratio * self.scene.numerics.spacing;
-        for (input, value) in wanted {
-            let InputTarget::GateOpening(i) = input else {
-                continue;
-            };
-            let gate = &self.scene.gates[*i];
-            let length = walls::length(&gate.from, &gate.to);
-            let (from, to) = (self.before.openings[*i], now.openings[*i]);
-            let moved = (to - from) * length;
-            let most = gate.max_speed * h * (1.0 + 1e-9) + 1e-12 * length;
-            // A plate that closes may wait for grains; one that opens has nothing in its way.
-            let steps = f64::from(done.report.substeps);
-            let least = ((value - from) * length)
-                .min(gate.max_speed * h)
-                .min(0.1 * hs * steps)
-                .max(0.0);
-            let arrives = *value <= from || moved >= least * (1.0 - 1e-6) - 1e-9 * length;
-            if !(0.0..=1.0).contains(&to) || moved.abs() > most || !arrives {
-                self.fail(
-                    Check::Gate,
-                    time,
-                    format!(
-                        "gate {} told {value} went from {from} to {to} in {h} s, allowed at most {most} m{}",
-                        gate.name,
-                        if arrives { String::new() } else { format!(" and at least {least} m") }
-                    ),
-                );
-            }
-        }
-    }
-
-    fn check_rest(&mut self, totals: &Totals, mass: f64, time: f64) {
-        if !self.drive.rest || mass <= 0.0 {
-            return;
-        }
-        let centre = totals.moment.map(|m| m / mass);
-        let Some(half) = self.half else {
-            // Half of the communication steps, or of the internal ones where those run out first.
-            let late = self.figures.communication_steps + 1 >= self.drive.count as u64 / 2
-                || self.figures.internal_steps >= self.drive.most_steps / 2;
-            self.half = late.then_some(centre);
-            return;
-        };
-        let moved = walls::length(&half, &centre) / self.scene.numerics.spacing;
-        let energy = totals.kinetic_energy / self.balance.scale(mass);
-        self.figures.creep = self.figures.creep.max(moved);
-        if moved > 0.01 || energy > 1e-5 {
-            self.fail(
-                Check::Rest,
-                time,
-                format!(
-                    "the centre of mass moved by {moved:.2e} dp, allowed 0.01; kinetic energy is {energy:.2e} of M g H, allowed 1e-5"
-                ),
-            );
-        }
-    }
-
-    /// A block that nothing touches falls at g, as one.
-    fn check_fall(&mut self, totals: &Totals, mass: f64, time: f64) {
-        let g = &self.scene.domain.gravity;
-        let start = self.balance.start_velocity();
-        let mean = totals.momentum.map(|p| p / mass);
-        let miss: f64 = (0..3)
-            .map(|k| (mean[k] - start[k] - g[k] * time).powi(2))
-            .sum();
-        let own = 2.0 * totals.kinetic_energy / mass - mean.iter().map(|v| v * v).sum::<f64>();
-        let size = walls::length(g, &[0.0; 3]);
-        let miss = miss.sqrt() / (size * time + walls::length(&start, &[0.0; 3]));
-        // It starts with the pressure of its height, which has nothing to rest on: p = rho g H gives off p/(rho c0).
-        let given = size * self.balance.height() / self.scene.numerics.sound_speed;
-        let spread = own.max(0.0).sqrt() / given;
-        if miss > 1e-9 || spread > 1.0 {
-            self.fail(
-                Check::Rest,
-                time,
-                format!("a block that falls misses g t by {miss:.2e} of it, allowed 1e-9; its grains differ by {spread:.2e} of what its pressure gives, allowed 1"),
-            );
-        }
-    }
-
     /// Counts a step for the figures.
     pub(super) fn count(&mut self, done: &Done) {
         self.figures.communication_steps += 1;
@@ -415,25 +237,4 @@ impl<'a> Witness<'a> {
 pub(super) fn is_asleep(component: &Component) -> bool {
     let asleep = component.particles().asleep;
     !asleep.is_empty() && asleep.iter().all(|a| *a == 1)
-}
-
-/// Gauges of forces: on what, and the handle of each component.
-pub(super) fn forces(
-    scene: &Scene,
-    component: &Component,
-) -> Vec<(ForceTarget, Vec<ValueReference>)> {
-    let handle = |gauge: &str, axis: &str| {
-        let name = format!("gauge.{gauge}.force_{axis}");
-        Some(component.variables().by_name(&name)?.reference)
-    };
-    let gauges = scene.gauges.iter();
-    gauges
-        .filter_map(|gauge| match &gauge.kind {
-            GaugeKind::Force { on } => {
-                let axes = ["x", "y", "z"].into_iter();
-                Some((*on, axes.filter_map(|a| handle(&gauge.name, a)).collect()))
-            }
-            _ => None,
-        })
-        .collect()
 }
