@@ -78,7 +78,7 @@ const KEYS: [Key; 7] = [
     Key {
         key: "courant",
         about: "acoustic Courant number",
-        default: 0.5,
+        default: 0.7,
         values: &[0.1, 0.25, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0],
     },
     Key {
