@@ -95,7 +95,9 @@ pub(super) fn chute(dice: &mut Dice) -> Draft {
         speed,
     };
     scale.speed += 0.5;
-    let (below, above) = (short(10.0 * dp), short(24.0 * dp));
+    // A jet against a shut gate splashes: to four times its head.
+    let splash = 4.0 * speed * speed / (2.0 * 9.81);
+    let (below, above) = (short(10.0 * dp), short(24.0 * dp + splash));
     let mut scene = head(
         "2",
         &[-short(6.0 * dp), -below],
