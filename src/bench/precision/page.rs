@@ -11,6 +11,13 @@ use crate::validate::report::number;
 pub const MADE: &str =
     "<!-- Written by `sandgate bench precision` from a stored run; do not edit. -->";
 
+/// Why the defaults are not the front of each study.
+const WHY: &str = "\
+\nThe defaults are the best choice for all studies at once, and for none by itself. A `solver_tolerance` of 1e-2 is \
+cheaper in collapses and makes flow down a slope run away (bagnold). `courant` = 0.9 costs little accuracy and less \
+time; scenes may ask for it (docs/decisions/008-courant.md says why it is not the default). Without density diffusion \
+Bagnold's flow is as good, and what should be hydrostatic is not.\n";
+
 /// The whole page; figures lie beside it as precision_NAME.svg.
 #[must_use]
 pub fn text(run: &PrecisionRun) -> String {
@@ -36,6 +43,7 @@ pub fn text(run: &PrecisionRun) -> String {
     );
     text.push_str("\n\n");
     text.push_str(&summary(run));
+    text.push_str(WHY);
     text.push_str(&qualities(run));
     for study in &STUDIES {
         let (all, uncertain) = standings(study, run);
