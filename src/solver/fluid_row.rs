@@ -2,7 +2,7 @@
 //!
 //! Symbols: F = W'(r)/r <= 0, g = V_j F x, x = x_i - x_j, v = v_i - v_j, gamma shear rate.
 
-use crate::math::{Four, LANES, Lanes, Quad, Tensor, Vector};
+use crate::math::{Four, LANES, Lanes, Quad, Tensor, Vector, dot, shear_rate, trace};
 
 use super::Solver;
 use super::pair::Block;
@@ -19,8 +19,42 @@ pub(super) struct Row<const D: usize> {
     pub(super) moment: Tensor<D>,
     /// gamma_pair^2 = (D + 2) sum V_j |F| (v_ij . x_ij)^2/r^2 [1/s^2].
     pub(super) pair_shear2: f64,
+    /// sum V_j |F| r^2 (cos 4 theta, sin 4 theta), theta the direction of x_ij: how far neighbours lie otherwise than evenly
+    /// all around; 0 in space and in scenes without fluids [1].
+    pub(super) fourfold: [f64; 2],
     /// Largest |v_ij|^2 [m^2/s^2].
     pub(super) speed2: f64,
+}
+
+impl<const D: usize> Row<D> {
+    /// Adds a neighbour at x_i - x_j = x of w = V_j |F|, at v_i - v_j with v.x = vx, to what the pair form's bias is made of.
+    #[inline(always)]
+    pub(super) fn add_pair(&mut self, x: &Vector<D>, vx: f64, w: f64, fluids: bool) {
+        let weight = w / dot(x, x);
+        self.pair_shear2 += (D as f64 + 2.0) * weight * vx * vx;
+        if D == 2 && fluids {
+            let (p, q) = ((x[0] - x[1]) * (x[0] + x[1]), 2.0 * x[0] * x[1]);
+            self.fourfold[0] += weight * (p - q) * (p + q);
+            self.fourfold[1] += weight * 2.0 * p * q;
+        }
+    }
+
+    /// gamma_pair^2 as it would be if velocities were linear with this deviator of the strain rate, a ring's hoop included;
+    /// in space as for neighbours that lie evenly all around [1/s^2].
+    pub(super) fn even_pair_shear2(&self, e: &Tensor<D>) -> f64 {
+        let m = &self.moment;
+        if D != 2 {
+            return shear_rate(e).powi(2) * trace(m) / D as f64;
+        }
+        // e = t/2 I + [[a, b], [b, -a]], and x.e x = t r^2/2 + r^2 (a cos 2 theta + b sin 2 theta).
+        let t = trace(e);
+        let (a, b) = (0.5 * (e[0][0] - e[1][1]), e[0][1]);
+        let [even, odd] = self.fourfold;
+        let round = (0.5 * t * t + a * a + b * b) * trace(m);
+        let twofold = t * (a * (m[0][0] - m[1][1]) + 2.0 * b * m[0][1]);
+        // The hoop's own rate is -t.
+        2.0 * (round + (a * a - b * b) * even + 2.0 * a * b * odd) + 4.0 * twofold + t * t
+    }
 }
 
 impl<const D: usize> Solver<D> {
@@ -78,9 +112,9 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Coefficients, appended to the block, and sums of particle i against the neighbours `near`. RINGS: particles are
-    /// rings.
+    /// rings; FLUIDS: some material is a fluid.
     #[inline(always)]
-    pub(super) fn fluid_row<L: Lanes, const RINGS: bool>(
+    pub(super) fn fluid_row<L: Lanes, const RINGS: bool, const FLUIDS: bool>(
         &self,
         lanes: L,
         records: &[Record],
@@ -104,7 +138,7 @@ impl<const D: usize> Solver<D> {
             own[k] = Four::splat(lanes, vi[k]);
         }
         let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
-        let (mut pair_shear2, mut speed2) = (zero, zero);
+        let (mut pair_shear2, mut speed2, mut fourfold) = (zero, zero, [zero; 2]);
         let Block { j, g, c, .. } = block;
         let groups = near.as_chunks::<LANES>().0;
         j.extend_from_slice(groups);
@@ -137,7 +171,13 @@ impl<const D: usize> Solver<D> {
                 }
             }
             // |g| r = |vf| r^2; (v.x)^2/r^2 = (v.x)^2 vf (1/(r^2 vf)).
-            pair_shear2 -= vf * vf * inverse * vx * vx;
+            let weight = vf * vf * inverse;
+            pair_shear2 -= weight * vx * vx;
+            if D == 2 && FLUIDS {
+                let (p, q) = ((x[0] - x[1]) * (x[0] + x[1]), (x[0] + x[0]) * x[1]);
+                fourfold[0] -= weight * (p - q) * (p + q);
+                fourfold[1] -= weight * (p + p) * q;
+            }
             speed2 = speed2.max(v2);
             g.push(weights);
             c.push((pair_form * inverse).store());
@@ -146,6 +186,7 @@ impl<const D: usize> Solver<D> {
             gradient: [[0.0; D]; D],
             moment: [[0.0; D]; D],
             pair_shear2: dissipation * pair_shear2.sum(),
+            fourfold: fourfold.map(Four::sum),
             speed2: speed2.largest(),
         };
         for a in 0..D {

@@ -25,7 +25,7 @@ pub(super) struct Kinematics {
     pub(super) shear: f64,
     /// R = gamma from the corrected gradient over gamma, 0.8 to 3 [1].
     pub(super) correction: f64,
-    /// s: bias of the pair form, clamp(gamma^2/gamma_pair^2, 0.5, 2) [1].
+    /// s: bias of the pair form for a shear like this one, 0.5 to 2 [1].
     pub(super) pair_scale: f64,
     /// Largest speed relative to a neighbour or wall [m/s].
     pub(super) relative_speed: f64,
@@ -55,10 +55,20 @@ impl<const D: usize> Solver<D> {
         let mut blocks = std::mem::take(&mut self.lists.blocks);
         self.workers
             .blocks(&mut blocks, &mut kinematics, |block, first, out| {
-                in_lanes!(self.arch, |lanes| if self.geometry.is_axisymmetric() {
-                    self.block_kinematics::<_, true>(lanes, state, &records, block, first, out);
-                } else {
-                    self.block_kinematics::<_, false>(lanes, state, &records, block, first, out);
+                let rings = self.geometry.is_axisymmetric();
+                in_lanes!(self.arch, |lanes| match (rings, self.has_fluids) {
+                    (true, true) => self.block_kinematics::<_, true, true>(
+                        lanes, state, &records, block, first, out
+                    ),
+                    (true, false) => self.block_kinematics::<_, true, false>(
+                        lanes, state, &records, block, first, out
+                    ),
+                    (false, true) => self.block_kinematics::<_, false, true>(
+                        lanes, state, &records, block, first, out
+                    ),
+                    (false, false) => self.block_kinematics::<_, false, false>(
+                        lanes, state, &records, block, first, out
+                    ),
                 });
             });
         self.records = records;
@@ -68,7 +78,7 @@ impl<const D: usize> Solver<D> {
     }
 
     #[inline(always)]
-    fn block_kinematics<L: Lanes, const RINGS: bool>(
+    fn block_kinematics<L: Lanes, const RINGS: bool, const FLUIDS: bool>(
         &self,
         lanes: L,
         state: &State<D>,
@@ -84,8 +94,13 @@ impl<const D: usize> Solver<D> {
             let i = first + row;
             let (x, v) = (&state.grains.position[i], &state.grains.velocity[i]);
             let count = self.find_near(lanes, records, i, x, block.row(row), &mut near);
-            let mut sums =
-                self.fluid_row::<L, RINGS>(lanes, records, (i, x, v), block, &near[..count]);
+            let mut sums = self.fluid_row::<L, RINGS, FLUIDS>(
+                lanes,
+                records,
+                (i, x, v),
+                block,
+                &near[..count],
+            );
             block.group_ends.push(block.j.len() as u32);
             if !block.wall_row(row).is_empty()
                 && let Some(w) = self.wall_row(
@@ -98,7 +113,7 @@ impl<const D: usize> Solver<D> {
             {
                 block.wall_rows.push(w);
             }
-            *o = self.finish(&sums, i, v);
+            *o = self.finish(&sums, state.grains.phase[i], i, v);
         }
         block.near = near;
         block.contacts = contacts;
@@ -186,8 +201,7 @@ impl<const D: usize> Solver<D> {
             }
             let v = seen(&sub(vi, &vw));
             add_outer(&mut sums.moment, -1.0, &x, &g);
-            let vx = 2.0 * dot(&v, &x);
-            sums.pair_shear2 -= dissipation * vf * vx * vx / (r * r);
+            sums.add_pair(&x, 2.0 * dot(&v, &x), -vf, self.has_fluids);
             // Sliding along a free-slip face costs nothing: only the part it sees bounds the step, unless the face
             // itself comes along.
             let v = if self.walls.groups[self.walls.group[wall as usize] as usize].moves {
@@ -227,12 +241,8 @@ impl<const D: usize> Solver<D> {
     }
 
     /// From the sums of row i, at velocity v, to what the rheology needs.
-    pub(super) fn finish(&self, sums: &Row<D>, i: usize, v: &Vector<D>) -> Kinematics {
+    pub(super) fn finish(&self, sums: &Row<D>, phase: u8, i: usize, v: &Vector<D>) -> Kinematics {
         let hoop = self.hoop_rate(i, v);
-        let rate = |g: &Tensor<D>| {
-            self.geometry
-                .shear_rate(&self.geometry.strain_deviator(g, hoop))
-        };
         let mut gradient = sums.gradient;
         let mut kinematics = Kinematics {
             divergence: trace(&gradient),
@@ -251,11 +261,19 @@ impl<const D: usize> Solver<D> {
                 kinematics.relative_speed = kinematics.relative_speed.max(2.0 * v[0].abs());
             }
         }
-        kinematics.shear = rate(&gradient);
+        let plain = self.geometry.strain_deviator(&gradient, hoop);
+        kinematics.shear = self.geometry.shear_rate(&plain);
         if kinematics.shear > 0.0 && determinant(&sums.moment) > 0.15 {
             // M does without what `axis` stands for.
-            let corrected = rate(&multiply(&sums.gradient, &inverse(&sums.moment)));
-            kinematics.correction = (corrected / kinematics.shear).clamp(0.8, 3.0);
+            let corrected = multiply(&sums.gradient, &inverse(&sums.moment));
+            let e = self.geometry.strain_deviator(&corrected, hoop);
+            let shear = self.geometry.shear_rate(&e);
+            kinematics.correction = (shear / kinematics.shear).clamp(0.8, 3.0);
+            if self.materials[phase as usize].is_fluid() {
+                // Were velocities taken as they are, their unevenness would count as shear and the pair form would bear a tenth to a third
+                // less of the mean stress than its share. Sand keeps them: there unevenness also raises mu(I).
+                pair_shear2 = sums.even_pair_shear2(&e);
+            }
         }
         if pair_shear2 > 0.0 {
             kinematics.pair_scale =

@@ -217,7 +217,7 @@ impl<const D: usize> Passes<D> {
                 let rows = solver.plain_pairs(state, &mut plain.pairs);
                 plain.kinematics.resize(n, Kinematics::default());
                 for (i, (k, row)) in plain.kinematics.iter_mut().zip(&rows).enumerate() {
-                    *k = solver.finish(row, i, &v[i]);
+                    *k = solver.finish(row, state.grains.phase[i], i, &v[i]);
                 }
             }
             Pass::Pressure => {

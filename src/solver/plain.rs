@@ -67,6 +67,7 @@ impl<const D: usize> Solver<D> {
             gradient: [[0.0; D]; D],
             moment: [[0.0; D]; D],
             pair_shear2: 0.0,
+            fourfold: [0.0; 2],
             speed2: 0.0,
         };
         for &j in near {
@@ -86,8 +87,7 @@ impl<const D: usize> Solver<D> {
             let v = sub(&grains.velocity[i], &grains.velocity[n]);
             add_outer(&mut sums.gradient, -1.0, &v, &g);
             add_outer(&mut sums.moment, -1.0, &x, &g);
-            let vx = dot(&v, &x);
-            sums.pair_shear2 -= dissipation * vf * vx * vx / r2;
+            sums.add_pair(&x, dot(&v, &x), -vf, self.has_fluids);
             sums.speed2 = sums.speed2.max(dot(&v, &v));
             pairs.push(Pair {
                 j,
