@@ -64,6 +64,11 @@ pub fn run(
         machine: Machine::here(),
         units: Vec::new(),
     };
+    std::fs::create_dir_all(folder).map_err(|source| Error::File {
+        action: "make folder",
+        path: folder.to_path_buf(),
+        source,
+    })?;
     let [plane, space] = sizes(quick);
     let cost = |(dimension, n): &(usize, usize)| (*n * (4 * dimension - 7)) as f64;
     let plane = plane.iter().map(|n| (2, *n));

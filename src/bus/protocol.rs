@@ -447,7 +447,7 @@ fn advance(
 }
 
 fn expect_step(component: &Component, request: &Request) -> Result<(), Refusal> {
-    let step = component.statistics().communication_steps;
+    let step = component.communication_steps();
     match request.expect_step {
         Some(expected) if expected != step => Err(Refusal::new(
             Code::Conflict,

@@ -84,7 +84,7 @@ impl Publisher {
 
     /// All outputs, the figures of the solver, where the gates are, and the particles if somebody wants them.
     fn outputs(&mut self, component: &Component, report: Option<&StepReport>) -> Vec<Publication> {
-        let step = component.statistics().communication_steps;
+        let step = component.communication_steps();
         let sequence = self.sequence;
         self.sequence += 1;
         let mut batch: Vec<_> = self
@@ -193,7 +193,7 @@ impl Observer for Publisher {
         h: f64,
         source: &str,
     ) {
-        let step = component.statistics().communication_steps;
+        let step = component.communication_steps();
         let applied = self.applied(AppliedEvent::Step, step, t, h, source);
         let mut batch = self.outputs(component, Some(report));
         batch.insert(0, applied);
@@ -206,7 +206,7 @@ impl Observer for Publisher {
 
     fn on_jump(&mut self, component: &Component, event: AppliedEvent, source: &str) {
         self.pending.clear();
-        let step = component.statistics().communication_steps;
+        let step = component.communication_steps();
         let applied = self.applied(event, step, component.time(), f64::NAN, source);
         let mut batch = self.outputs(component, None);
         batch.insert(0, applied);

@@ -131,7 +131,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     say(&format!(
         "{why} at t = {} s after {} communication steps",
         component.time(),
-        component.statistics().communication_steps
+        component.communication_steps()
     ))?;
     let logged = logged?;
     if !logged.is_empty() {

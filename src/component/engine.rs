@@ -154,6 +154,9 @@ pub(crate) trait Engine: Send {
     /// Figures of the solver (without the number of communication steps, which the component counts).
     fn statistics(&self) -> Statistics;
 
+    /// Internal steps done.
+    fn steps(&self) -> u64;
+
     /// Momentum, energy and bounds of all particles.
     fn totals(&self) -> Totals;
 

@@ -352,7 +352,19 @@ impl Component {
         self.engine.ledger()
     }
 
-    /// Figures of the solver.
+    /// Communication steps done since the start. At once, as [`Component::steps`]: [`Component::statistics`] goes through all particles.
+    #[must_use]
+    pub fn communication_steps(&self) -> u64 {
+        self.life.communication_steps
+    }
+
+    /// Internal steps done since the start.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.engine.steps()
+    }
+
+    /// Figures of the solver. Built on demand.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         Statistics {

@@ -375,6 +375,10 @@ impl<const D: usize> Engine for Simulation<D> {
         }
     }
 
+    fn steps(&self) -> u64 {
+        self.state.steps
+    }
+
     fn statistics(&self) -> Statistics {
         let grains = &self.state.grains;
         let (mut energy, mut fastest) = (0.0, 0.0f64);

@@ -267,7 +267,7 @@ impl Run {
         progress: &mut dyn FnMut(f64),
     ) -> Result<(), RedriveError> {
         let component = &self.component;
-        let (mut step, mut time) = (component.statistics().communication_steps, component.time());
+        let (mut step, mut time) = (component.communication_steps(), component.time());
         let found = match decode(path, message)? {
             Body::Applied(applied) => {
                 let found = self.apply(&applied)?;

@@ -312,11 +312,10 @@ impl Recorder {
     }
 
     fn remember(&mut self, component: &Component) {
-        let figures = component.statistics();
         self.last = Last {
             time: component.time(),
-            communication_steps: figures.communication_steps,
-            steps: figures.steps,
+            communication_steps: component.communication_steps(),
+            steps: component.steps(),
         };
     }
 }

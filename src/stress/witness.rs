@@ -136,7 +136,7 @@ impl<'a> Witness<'a> {
         self.before = now;
         self.slept = is_asleep(component);
         self.figures.slept |= self.slept;
-        self.steps = component.statistics().steps;
+        self.steps = component.steps();
     }
 
     fn check_time(&mut self, done: &Done, start: f64, time: f64) {

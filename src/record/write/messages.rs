@@ -94,7 +94,7 @@ impl Recorder {
     ) {
         let step = match event {
             AppliedEvent::Initialize => 0,
-            _ => component.statistics().communication_steps,
+            _ => component.communication_steps(),
         };
         self.write_applied(event, step, (t, h), &[], source);
     }
@@ -108,7 +108,7 @@ impl Recorder {
         state: &[u8],
         source: &str,
     ) {
-        let step = component.statistics().communication_steps;
+        let step = component.communication_steps();
         self.write_applied(event, step, times, state, source);
     }
 

@@ -25,7 +25,7 @@ impl Witness<'_> {
             InputTarget::GateOpening(i) => (self.before.openings[*i] - value).abs() > 1e-6,
             InputTarget::InflowRate(_) => *value > 0.0,
         });
-        let worked = component.statistics().steps > self.steps;
+        let worked = component.steps() > self.steps;
         if told && !worked {
             self.fail(
                 Check::Sleep,
