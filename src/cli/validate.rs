@@ -22,6 +22,9 @@ pub(super) struct Args {
     /// Studies to run, all if none is named; `--list` shows them
     #[arg(value_name = "NAME")]
     names: Vec<String>,
+    /// Run only those whose name holds this text ("_6mm"); pages are then written from all that is finished
+    #[arg(long, value_name = "TEXT", conflicts_with_all = ["list", "only_pages"])]
+    members: Option<String>,
     /// Say which studies there are, what of them is finished and whether their pages are current; run nothing
     #[arg(long)]
     list: bool,
@@ -55,6 +58,7 @@ same. Ctrl-C saves what is under way; the same command goes on from there, also 
 Examples:
   sandgate validate --list
   sandgate validate columns --jobs 2
+  sandgate validate silted_depths --members _6mm
   sandgate validate --quick";
 
 /// Wall time between saves of a run under way, and between lines where nobody watches a terminal.
@@ -123,6 +127,17 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
                     .into_iter()
                     .map(|m| (study.name, m)),
             );
+        }
+        if let Some(text) = &args.members {
+            let known: Vec<String> = members.iter().map(|(_, m)| m.name.clone()).collect();
+            members.retain(|(_, m)| m.name.contains(text));
+            if members.is_empty() {
+                return Err(CliError::Usage(format!(
+                    "no run's name holds {}; their names are {}",
+                    crate::units::quote(text),
+                    known.join(", ")
+                )));
+            }
         }
         run_missing(args, &store, &members)?;
     }

@@ -82,3 +82,20 @@ fn the_repository_s_index_is_that_of_its_pages() {
         }
     }
 }
+
+#[test]
+fn a_part_of_a_name_chooses_runs_and_one_that_fits_none_is_refused() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let quick = ["film", "--quick", "--members"];
+    let (code, _, error) = validate(&[&quick[..], &["newtn"]].concat(), folder.path());
+    assert_eq!(code, Some(2), "{error}");
+    assert!(
+        error.contains("newtn") && error.contains("newton_4"),
+        "{error}"
+    );
+    let (code, _, error) = validate(&[&quick[..], &["newton_4"]].concat(), folder.path());
+    assert_eq!(code, Some(0), "{error}");
+    let page = folder.path().join("out/validation/quick/pages/film.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(page.contains("1 of 13 runs"), "{page}");
+}

@@ -1,6 +1,7 @@
 //! The studies, one a file. A new one: its file, a line of [`ALL`], and its reference data under cases/reference.
 
 mod channel;
+mod clay_dam;
 mod columns;
 mod contact;
 mod controls;
@@ -11,6 +12,7 @@ mod janssen;
 mod rest;
 mod silo;
 mod silted_dams;
+mod silted_depths;
 mod slump;
 mod surge;
 mod two_layers;
@@ -19,7 +21,7 @@ mod yield_profile;
 use super::Study;
 
 /// All studies, in the order in which they are listed and run.
-pub const ALL: [Study; 17] = [
+pub const ALL: [Study; 19] = [
     incline::STUDY,
     columns::STUDY,
     columns::axisymmetric::STUDY,
@@ -36,7 +38,9 @@ pub const ALL: [Study; 17] = [
     dam_breaks::STUDY,
     slump::STUDY,
     two_layers::STUDY,
+    clay_dam::STUDY,
     silted_dams::STUDY,
+    silted_depths::STUDY,
 ];
 
 /// A study by name.
