@@ -59,7 +59,7 @@ fn column(
 /// the sand goes.
 fn frame(name: &str, effort: Effort, speed: f64) -> Result<Member, String> {
     let reach = 5.0 * R0;
-    let text = scene([R0, H0], spacing(effort), reach)?
+    let mut template = scene([R0, H0], spacing(effort), reach)?
         .with("domain.upper", point(reach + speed * SEEN_AT, 1.5 * H0))
         .with(
             "walls.floor.polyline",
@@ -68,13 +68,17 @@ fn frame(name: &str, effort: Effort, speed: f64) -> Result<Member, String> {
         // The same in both frames; left out, it would follow the speed of the body.
         .with("numerics.sound_speed", 10.0 * (GRAVITY * H0).sqrt())
         .with("bodies.column.velocity", point(speed, 0.0))
-        .with("walls.floor.velocity", point(speed, 0.0))
         .with("run.step", SEEN_AT / 20.0)
-        .with("run.until", SEEN_AT)
-        .text()?;
+        .with("run.until", SEEN_AT);
+    if speed != 0.0 {
+        // The floor comes along as a whole: of a belt, which is the default, only the surface would.
+        template = template
+            .with("walls.floor.motion", "rigid")
+            .with("walls.floor.velocity", point(speed, 0.0));
+    }
     Ok(Member::new(
         name.to_owned(),
-        text,
+        template.text()?,
         &["gauge.front_right.front"],
         Vec::new(),
     ))
