@@ -10,7 +10,6 @@ Each figure stands beside what is asked of it; one that misses is marked, and th
 
 import argparse
 import contextlib
-import ctypes
 import datetime
 import os
 import pathlib
@@ -29,13 +28,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "examples"), str(ROOT / "tests/python")]
 SILO = ROOT / "tests/scenes/small_silo.toml"
 CASE = ROOT / "cases/silo_gate.toml"
-GATE = "gate.main.opening"
 
 from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
+import paired
 from bus_client import Component, open_session
-from importer import Library
+from paired import GATE, watcher
 
 
 class Bench:
@@ -153,19 +152,6 @@ def calls(bench):
                   max(took) < 100)
 
 
-@contextlib.contextmanager
-def watcher(endpoint, naps=0.0):
-    """A subscriber to everything in a process of its own."""
-    command = [sys.executable, str(ROOT / "tests/python/watcher.py"), endpoint, "silo", "level.depth", str(naps)]
-    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    try:
-        assert process.stdout.readline() == "subscribed\n"
-        yield process
-    finally:
-        process.kill()
-        process.wait()
-
-
 def messages(bench):
     """10,000 messages a second to a subscriber that takes them."""
     seconds = 2 if bench.quick else 20
@@ -266,36 +252,10 @@ def lateness(log):
     return [1e3 * (offset - start) for offset in offsets]
 
 
-def cpu(bench, scene, steps, h, log=None, config=None, watched=False):
-    """CPU time [s] of all threads for steps through the C interface."""
-    library = Library(str(bench.target / "libsandgate_fmu_zenoh.so"), str(scene))
-    told = []
-    kind = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p)
-    logger = kind(lambda _, category, message: told.append(message.decode()))
-    library.check(library.lib.sandgate_set_logger(library.handle, logger, None))
-    for name, text in (("log.path", log), ("zenoh.config", config)):
-        if text:
-            reference = ctypes.c_uint32(library.references[name])
-            library.check(library.lib.sandgate_set_text(library.handle, reference, text.encode()))
-    library.initialize()
-    endpoint = next((text.split()[-1] for text in told if "listening on" in text), None)
-    library.set(GATE, 1.0)
-    with watcher(endpoint) if watched else contextlib.nullcontext():
-        if watched:
-            time.sleep(0.3)
-        begin = time.process_time()
-        for k in range(steps):
-            library.step(k * h, (k + 1) * h - k * h)
-        if watched:
-            time.sleep(0.2)  # What waits to be published belongs to the cost.
-        took = time.process_time() - begin
-    library.free()
-    return took
-
-
 def cost(bench):
-    """CPU time of silo_gate with and without what watches it, in pairs that follow one another and change their order."""
+    """CPU time of silo_gate with and without what watches it, step by step side by side (paired.py)."""
     pairs, steps = (1, 1) if bench.quick else (15, 4)
+    library = str(bench.target / "libsandgate_fmu_zenoh.so")
     with tempfile.TemporaryDirectory() as folder:
         text = CASE.read_text()
         quiet = re.sub(r'(?m)^particles_every = .*$', 'particles_every = "1000 s"', text)
@@ -308,31 +268,25 @@ def cost(bench):
             scenes[name] = pathlib.Path(folder) / name / CASE.name
             scenes[name].write_text(text)
         config = "{metadata: {sandgate: {instance: 'silo'}}}"
+        # What is only compared with has half the steps.
         variants = [
-            ("nothing at all, for comparison", "-", 1.0, "quiet", 0.01, dict()),
-            ("no log, a Zenoh session and nobody watching", "nothing measurable", None, "quiet", 0.01, dict(config=config)),
-            ("a log, and publishing to a subscriber, every 10 ms", "under 2 %", 0.02, "quiet", 0.01,
-             dict(config=config, watched=True, log="x")),
-            ("a log with particles at 25 Hz", "under 10 %", 0.10, "often", 0.04, dict(log="x")),
+            ("nothing at all, for comparison", "-", 1.0, "quiet", 2, dict()),
+            ("no log, a Zenoh session and nobody watching", "nothing measurable", None, "quiet", 2, dict(config=config)),
+            ("a log, and publishing to a subscriber, every 10 ms", "under 2 %", 0.02, "quiet", 1,
+             dict(config=config, watched=True, log=True)),
+            ("a log with particles at 25 Hz", "under 10 %", 0.10, "often", 1, dict(log=True)),
         ]
         noise = 0.0
-        for what, asked, most, scene, h, extra in variants:
-            shares, count = [], 0
-            for k in range(pairs):
-                took = {}
-                for on in (k % 2 == 0, k % 2 == 1):
-                    count += 1
-                    more = {**extra, **({"log": os.path.join(folder, f"{scene}{count}.mcap")} if "log" in extra else {})}
-                    n = steps if h < 0.02 else max(1, steps // 2)
-                    took[on] = cpu(bench, scenes[scene], n, h, **(more if on else {}))
-                    for file in pathlib.Path(folder).glob("*.mcap"):
-                        file.unlink()
-                shares.append(took[True] / took[False] - 1.0)
+        for what, asked, most, scene, part, extra in variants:
+            n = max(1, steps // part)
+            found = [paired.pair(library, scenes[scene], n, 0.01, folder, **extra) for _ in range(pairs)]
+            shares, others = zip(*found)
             middle = statistics.median(shares)
             spread = (share(shares, 0.25), share(shares, 0.75))
             noise = noise or max(0.01, *map(abs, spread))
-            bench.row(f"CPU time of silo_gate: {what}, over without; median of {pairs} pairs",
-                      f"{100 * middle:+.2f} % (half of the pairs {100 * spread[0]:+.1f} to {100 * spread[1]:+.1f} %)",
+            threads = f"; its threads alone {100 * statistics.median(others):+.2f} %" if extra else ""
+            bench.row(f"CPU time of silo_gate: {what}, over without; median of {pairs} pairs of {2 * n} steps each",
+                      f"{100 * middle:+.2f} % (half of the pairs {100 * spread[0]:+.1f} to {100 * spread[1]:+.1f} %{threads})",
                       asked, abs(middle) < noise if most is None else middle < most)
 
 
