@@ -68,7 +68,7 @@ messages! {
         /// `h` as a number, for plots [s].
         #[prost(double, tag = "7")]
         pub h: f64,
-        /// Inputs set since the call before, in the order in which they were set.
+        /// Inputs set since the call before, in the order in which they were set; of more than 1,024 only the last of each.
         #[prost(message, repeated, tag = "8")]
         pub inputs: Vec<AppliedInput>,
         /// Who made the call: "run", "fmi3", "c", or the name of a Zenoh client.

@@ -4,6 +4,11 @@
 use super::convert::timestamp;
 use super::messages::{Applied, AppliedEvent, AppliedInput, AppliedMoment};
 use crate::component::{Component, ValueReference, Wish};
+use std::collections::HashSet;
+
+/// Inputs that are all told, also those that were set again before a step could use them. Of more only the last of each
+/// variable is kept, so that a component that waits takes set-points for days in the same memory.
+const TOLD: usize = 1024;
 
 /// Something done inside a step, after one of its internal steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +39,7 @@ impl Pending {
     ) {
         self.inputs
             .extend(applied_inputs(component, references, values, source));
+        self.forget_superseded();
     }
 
     /// Inputs were given slopes by `source`, one each.
@@ -49,6 +55,22 @@ impl Pending {
             slope: true,
             ..input
         }));
+        self.forget_superseded();
+    }
+
+    /// If there are too many, keeps the last value and the last slope of each variable, in the order in which they were
+    /// set: who sets these comes to the same inputs.
+    fn forget_superseded(&mut self) {
+        if self.inputs.len() <= TOLD {
+            return;
+        }
+        let mut later = HashSet::new();
+        self.inputs.reverse();
+        self.inputs
+            .retain(|input| later.insert((input.reference, input.slope)));
+        self.inputs.reverse();
+        // What so many took is not needed again soon.
+        self.inputs.shrink_to(TOLD);
     }
 
     /// Something was done inside the step that is running.
@@ -132,4 +154,50 @@ fn applied_inputs(
             slope: false,
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::component::{Causality, ValueKind};
+
+    #[test]
+    fn a_component_that_waits_keeps_the_last_of_each_input() {
+        let text = include_str!("../../tests/scenes/devices.toml");
+        let scene = crate::scene::parse("devices.toml", text).unwrap();
+        let component = Component::new(&scene).unwrap();
+        let rows = component.variables().rows().iter();
+        let inputs: Vec<_> = rows
+            .filter(|v| {
+                v.causality == Causality::Input && v.kind == ValueKind::Real && v.len() == 1
+            })
+            .map(|v| v.reference)
+            .collect();
+        let [first, second, ..] = inputs[..] else {
+            panic!("two inputs are needed: {inputs:?}")
+        };
+        let mut pending = Pending::default();
+        pending.set(&component, &[second], &[0.25], "early");
+        pending.slopes(&component, &[first], &[0.5], "early");
+        let mut most = 0;
+        for k in 0..10_000 {
+            pending.set(&component, &[first], &[f64::from(k)], "late");
+            most = most.max(pending.inputs.len());
+        }
+        assert_eq!(most, TOLD);
+        let told = pending.applied(AppliedEvent::Step, 1, (0.0, 0.1), "test");
+        let of = |reference, slope| {
+            let found = told
+                .inputs
+                .iter()
+                .rposition(|i| i.reference == reference && i.slope == slope);
+            found.map(|k| (k, told.inputs[k].values[0]))
+        };
+        let (value, slope) = (of(first, false).unwrap(), of(first, true).unwrap());
+        assert_eq!((value.1, slope.1), (9_999.0, 0.5));
+        assert_eq!(of(second, false).unwrap().1, 0.25);
+        // A value that is set takes the slope's place, so that their order counts.
+        assert!(slope.0 < value.0);
+        assert!(pending.is_empty());
+    }
 }

@@ -131,3 +131,39 @@ fn a_run_whose_files_cannot_grow_tells_of_its_log() {
         judge(&output, &out, required, "File too large");
     }
 }
+
+/// The log alone meets the limit: the run is whole and says so, and so does its summary of the log.
+#[cfg(unix)]
+#[test]
+fn a_run_that_lost_its_log_ends_well_and_its_summary_says_what_is_missing() {
+    for required in [true, false] {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let scene = scene(folder.path(), required);
+        let out = folder.path().join("out");
+        // 205 kB: more than any other file of the run, less than its log.
+        let script = format!(
+            "trap '' XFSZ; ulimit -f 400; exec '{}' run '{}' --threads 1 --out '{}'",
+            env!("CARGO_BIN_EXE_sandgate"),
+            scene.display(),
+            out.display()
+        );
+        let output = Command::new("sh").args(["-c", &script]).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let (status, code) = match required {
+            true => ("failed", Some(5)),
+            false => ("finished", Some(0)),
+        };
+        assert_eq!(output.status.code(), code, "{said}");
+        assert_eq!(summary["status"], status, "{said}");
+        assert_eq!(summary["error"].is_null(), !required, "{text}");
+        let failure = summary["parts"][0]["log_failure"].as_str().unwrap();
+        assert!(failure.contains("File too large"), "{failure}");
+        assert!(failure.contains("run.mcap.part"), "{failure}");
+        if !required {
+            assert!(failure.contains("messages are not in the log"), "{failure}");
+            assert!(!said.contains("error: "), "{said}");
+        }
+    }
+}

@@ -14,6 +14,8 @@ pub(super) struct RunLog {
     recorder: Option<Recorder>,
     /// File name in the run's folder.
     pub(super) name: Option<String>,
+    /// Why the log is not whole, if it is not.
+    pub(super) failure: Option<String>,
     warned: bool,
 }
 
@@ -23,6 +25,7 @@ impl RunLog {
         Self {
             recorder: None,
             name: None,
+            failure: None,
             warned: false,
         }
     }
@@ -45,6 +48,7 @@ impl RunLog {
         Ok(Self {
             recorder: Some(recorder),
             name: Some(name),
+            failure: None,
             warned: false,
         })
     }
@@ -98,10 +102,12 @@ impl RunLog {
         let Some(recorder) = &mut self.recorder else {
             return Ok(());
         };
-        recorder.record_step(component, report, t, h, SOURCE)?;
-        if !self.warned
-            && let Some(failure) = recorder.failure()
-        {
+        let recorded = recorder.record_step(component, report, t, h, SOURCE);
+        if self.failure.is_none() {
+            self.failure = recorder.failure().map(|failure| failure.to_string());
+        }
+        recorded?;
+        if let (false, Some(failure)) = (self.warned, &self.failure) {
             self.warned = true;
             eprintln!("warning: {failure}; the run goes on without its log");
         }
@@ -124,15 +130,18 @@ impl RunLog {
         let Some(recorder) = self.recorder.take() else {
             return Ok(());
         };
-        let finished = recorder.finish(component, status)?;
         // A short run meets a full disk only here, when the last bytes are written.
+        let finished = recorder.finish(component, status).inspect_err(|error| {
+            self.failure.get_or_insert(error.to_string());
+        })?;
         if let Some(failure) = finished.failure {
-            let dropped = finished.dropped;
+            let missing = format!("{} messages are not in the log", finished.dropped);
             if self.warned {
-                eprintln!("warning: {dropped} messages are not in the log");
+                eprintln!("warning: {missing}");
             } else {
-                eprintln!("warning: {failure}; {dropped} messages are not in the log");
+                eprintln!("warning: {failure}; {missing}");
             }
+            self.failure = Some(format!("{failure}; {missing}"));
         }
         Ok(())
     }

@@ -90,6 +90,7 @@ fn parts(session: &Session) -> Vec<Value> {
         "smallest_step": number(part.smallest_step),
         "bound_by": part.bound_by,
         "log": session.log.name,
+        "log_failure": session.log.failure,
     }));
     parts
 }
