@@ -274,7 +274,12 @@ impl<const D: usize> Solver<D> {
             let x: Vector<D> = std::array::from_fn(|k| t[k] + row.penalty * slip[k]);
             let cut = self.beyond(row, &x, &tau, 1.0);
             grains.wall_traction[i] = sub(&x, &cut);
-            grains.wall_slip[i] = scale(1.0 / row.penalty, &cut);
+            // Nor may it become one where the penalty, which goes with the pressure, has fallen further than the limit:
+            // cohesion bears traction at no pressure, and r s would throw the particle when the pressure returns.
+            let size = norm(&cut);
+            let most = SPARE * row.penalty * norm(&slip);
+            let share = if size > most { most / size } else { 1.0 };
+            grains.wall_slip[i] = scale(share / row.penalty, &cut);
         }
     }
 
