@@ -31,7 +31,7 @@ pub enum Look {
 /// One curve.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Name in the legend.
+    /// Name in the legend; one without has no place there.
     pub name: String,
     /// Points, in order.
     pub points: Vec<(f64, f64)>,
@@ -137,7 +137,8 @@ impl Chart {
         &self,
         area: &DrawingArea<SVGBackend, Shift>,
     ) -> Result<(), Box<dyn std::error::Error>> {
-        for (index, curve) in self.curves.iter().enumerate() {
+        let named = self.curves.iter().filter(|c| !c.name.is_empty());
+        for (index, curve) in named.enumerate() {
             let colour = COLOURS[curve.colour % COLOURS.len()];
             let y = 24 + 21 * i32::try_from(index)?;
             match curve.look {
