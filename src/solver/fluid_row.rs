@@ -15,6 +15,8 @@ const LEAST_DISTANCE2: f64 = 1e-12;
 pub(super) struct Row<const D: usize> {
     /// sum (v_j - v_i) (x) g, walls twice [1/s].
     pub(super) gradient: Tensor<D>,
+    /// What images across flat walls add to it for the shear rate alone [1/s].
+    pub(super) images: Tensor<D>,
     /// -sum x_ij (x) g: the identity far from surfaces [1].
     pub(super) moment: Tensor<D>,
     /// gamma_pair^2 = (D + 2) sum V_j |F| (v_ij . x_ij)^2/r^2 [1/s^2].
@@ -184,6 +186,7 @@ impl<const D: usize> Solver<D> {
         }
         let mut sums = Row {
             gradient: [[0.0; D]; D],
+            images: [[0.0; D]; D],
             moment: [[0.0; D]; D],
             pair_shear2: dissipation * pair_shear2.sum(),
             fourfold: fourfold.map(Four::sum),

@@ -12,6 +12,7 @@ use crate::state::State;
 use super::Solver;
 use super::barrier::Nearness;
 use super::fluid_row::Row;
+use super::mirror::add_image_gradient;
 use super::pair::{Block, WallRow};
 use super::record::Record;
 use super::wall_friction::{Contact, Face};
@@ -40,6 +41,7 @@ impl<const D: usize> Solver<D> {
         self.update_rings(state);
         let mut records = std::mem::take(&mut self.records);
         records.resize(n, Record::default());
+        self.note_mirrors(state);
         let grains = &state.grains;
         self.workers.each(&mut records, |i, r| {
             let hoop = self.rings.get(i).map_or(0.0, |ring| ring.hoop);
@@ -103,7 +105,7 @@ impl<const D: usize> Solver<D> {
             );
             block.group_ends.push(block.j.len() as u32);
             if !block.wall_row(row).is_empty()
-                && let Some(w) = self.wall_row(
+                && let Some(mut w) = self.wall_row(
                     state,
                     (i, row),
                     block.wall_row(row),
@@ -111,6 +113,13 @@ impl<const D: usize> Solver<D> {
                     &mut contacts,
                 )
             {
+                if FLUIDS && !RINGS {
+                    let first_image = block.images.len() as u32;
+                    w.lean_less = self.find_images(state, i, block, &near[..count]);
+                    w.images = (first_image, block.images.len() as u32);
+                    let v = &state.grains.velocity;
+                    add_image_gradient(block.images_of(&w), i, v, &mut sums.images);
+                }
                 block.wall_rows.push(w);
             }
             *o = self.finish(&sums, state.grains.phase[i], i, v);
@@ -144,6 +153,8 @@ impl<const D: usize> Solver<D> {
             barrier: 0.0,
             push: [0.0; D],
             lean: [[0.0; D]; D],
+            lean_less: [[0.0; D]; D],
+            images: (0, 0),
         };
         let material = &self.materials[grains.phase[i] as usize];
         let is_fluid = material.is_fluid();
@@ -251,7 +262,16 @@ impl<const D: usize> Solver<D> {
             pair_scale: 1.0,
             relative_speed: sums.speed2.sqrt(),
         };
+        if self.has_fluids {
+            // Images change the shear rate and not div v, whose adjoint the pressure is.
+            for a in 0..D {
+                for b in 0..D {
+                    gradient[a][b] += sums.images[a][b];
+                }
+            }
+        }
         let mut pair_shear2 = sums.pair_shear2;
+        let plain_gradient = gradient;
         if self.geometry.is_axisymmetric() {
             gradient[0][0] += self.axis_rate(i, v);
             kinematics.divergence += hoop + self.rings[i].closing;
@@ -265,13 +285,13 @@ impl<const D: usize> Solver<D> {
         kinematics.shear = self.geometry.shear_rate(&plain);
         if kinematics.shear > 0.0 && determinant(&sums.moment) > 0.15 {
             // M does without what `axis` stands for.
-            let corrected = multiply(&sums.gradient, &inverse(&sums.moment));
+            let corrected = multiply(&plain_gradient, &inverse(&sums.moment));
             let e = self.geometry.strain_deviator(&corrected, hoop);
             let shear = self.geometry.shear_rate(&e);
             kinematics.correction = (shear / kinematics.shear).clamp(0.8, 3.0);
             if self.materials[phase as usize].is_fluid() {
-                // Were velocities taken as they are, their unevenness would count as shear and the pair form would bear a tenth to a third
-                // less of the mean stress than its share. Sand keeps them: there unevenness also raises mu(I).
+                // Were velocities taken as they are, their unevenness would count as shear and the pair form would bear less of the
+                // mean stress than its share. Sand keeps them: there unevenness also raises mu(I).
                 pair_shear2 = sums.even_pair_shear2(&e);
             }
         }

@@ -17,6 +17,7 @@ mod implicit;
 mod kinematics;
 mod lean;
 mod lists;
+mod mirror;
 mod numerics;
 mod pack;
 mod pair;
@@ -207,6 +208,8 @@ pub struct Solver<const D: usize> {
     flows: Vec<f64>,
     /// Part of each particle's momentum that walls are given; empty in scenes without fluids.
     lean: Vec<crate::math::Tensor<D>>,
+    /// The flat wall without slip that each particle of a fluid sees; empty in scenes without fluids and of rings.
+    mirrors: Vec<mirror::Mirror<D>>,
     /// Smallest eigenvalue of each particle's moment matrix, 1 far from surfaces; empty in scenes that do not shift [1].
     openness: Vec<f64>,
     /// Shift velocity of each particle in the step [m/s]; empty in scenes that do not shift.
@@ -306,6 +309,7 @@ impl<const D: usize> Solver<D> {
             },
             flows: Vec::new(),
             lean: Vec::new(),
+            mirrors: Vec::new(),
             openness: Vec::new(),
             shift: Vec::new(),
             viscosity: Vec::new(),

@@ -2,6 +2,7 @@
 
 use crate::math::{LANES, Quad, Tensor, Vector};
 
+use super::mirror::Image;
 use super::wall_friction::Contact;
 
 /// Sums over the wall points that a particle sees. P projects on the normal at free slip, else P = I; w weight;
@@ -30,6 +31,10 @@ pub(super) struct WallRow<const D: usize> {
     /// Of fluids: sum (I - n n^T) |F| V (n.x)^2 over points without slip, how far their shear stress is carried on into walls
     /// (docs/theory.md, W4); else 0.
     pub(super) lean: Tensor<D>,
+    /// What images take from it.
+    pub(super) lean_less: Tensor<D>,
+    /// Range of its images in the block.
+    pub(super) images: (u32, u32),
 }
 
 /// A chunk of rows.
@@ -54,6 +59,8 @@ pub(super) struct Block<const D: usize> {
     pub(super) group_ends: Vec<u32>,
     /// Rows that see walls.
     pub(super) wall_rows: Vec<WallRow<D>>,
+    /// Images of neighbours across flat walls without slip, row after row; empty in scenes without fluids.
+    pub(super) images: Vec<Image<D>>,
     /// Faces with friction that rows see, row after row; empty in scenes without.
     pub(super) contacts: Vec<Contact<D>>,
 }
@@ -121,6 +128,7 @@ impl<const D: usize> Block<D> {
         self.c.clear();
         self.group_ends.clear();
         self.wall_rows.clear();
+        self.images.clear();
         self.contacts.clear();
     }
 
@@ -133,6 +141,12 @@ impl<const D: usize> Block<D> {
             self.group_ends[row - 1]
         };
         start as usize..self.group_ends[row] as usize
+    }
+
+    /// Images that a row sees.
+    #[inline(always)]
+    pub(super) fn images_of(&self, w: &WallRow<D>) -> &[Image<D>] {
+        &self.images[w.images.0 as usize..w.images.1 as usize]
     }
 
     /// Calls `visit(j, k, g)` for the neighbours of a row, one at a time: k = 2 V_j |F| [1/m^2], g = V_j grad_i W_ij [1/m].

@@ -65,6 +65,7 @@ impl<const D: usize> Solver<D> {
         let dissipation = D as f64 + 2.0;
         let mut sums = Row {
             gradient: [[0.0; D]; D],
+            images: [[0.0; D]; D],
             moment: [[0.0; D]; D],
             pair_shear2: 0.0,
             fourfold: [0.0; 2],

@@ -1,6 +1,6 @@
 //! The sweeps in lanes against the plain ones, and both architectures against each other.
 
-use crate::boundary::WallPoints;
+use crate::boundary::{GroupSpec, WallPoints};
 use crate::material::{Material, Viscous};
 use crate::math::{Arch, Geometry, Tensor, Vector};
 use crate::state::{Grains, PoseTimes, Random, RestState, State};
@@ -49,6 +49,15 @@ fn disordered<const D: usize>(
     geometry: Geometry,
     count: usize,
 ) -> (Solver<D>, State<D>) {
+    disordered_on(material, geometry, count, WallPoints::default())
+}
+
+fn disordered_on<const D: usize>(
+    material: Material,
+    geometry: Geometry,
+    count: usize,
+    walls: WallPoints<D>,
+) -> (Solver<D>, State<D>) {
     let mut random = Random::new(11);
     let mut grains = Grains {
         exact_yield: true,
@@ -89,7 +98,7 @@ fn disordered<const D: usize>(
             length: std::array::from_fn(|k| if k == 0 && periodic { length } else { 0.0 }),
         },
         materials: vec![material],
-        walls: WallPoints::default(),
+        walls,
         ghost_depth: Vec::new(),
         movers: Vec::new(),
         plates: Vec::new(),
@@ -225,6 +234,83 @@ fn a_fluids_pair_form_bears_its_share_whatever_the_unevenness() {
         whole(&uneven) / whole(&even) < 0.8,
         "that much unevenness would count as shear"
     );
+}
+
+/// Clay on a floor without slip, displaced by up to `jitter` dp, at velocities `motion(x, noise)`.
+fn on_floor(
+    jitter: f64,
+    motion: impl Fn(&Vector<2>, &Vector<2>) -> Vector<2>,
+) -> (Solver<2>, State<2>) {
+    let mut floor = WallPoints::default();
+    for n in 0..80 {
+        let place = |k: usize| (k as f64 + 0.5) * SPACING;
+        floor.push(
+            [place(n % 20), -place(n / 20)],
+            [0.0; 2],
+            [0.0, 1.0],
+            1.0,
+            0,
+        );
+    }
+    floor.groups.push(GroupSpec {
+        free_slip: false,
+        friction: 0.0,
+        moves: false,
+        wants_force: false,
+    });
+    let (mut solver, mut state) =
+        disordered_on::<2>(clay(), Geometry::Planar { width: 0.3 }, 20, floor);
+    for i in 0..state.grains.len() {
+        let x = &mut state.grains.position[i];
+        for c in x.iter_mut() {
+            let even = ((*c / SPACING).floor() + 0.5) * SPACING;
+            *c = even + jitter / 0.3 * (*c - even);
+        }
+        let x = *x;
+        state.grains.velocity[i] = motion(&x, &state.grains.velocity[i]);
+    }
+    solver.start(&mut state);
+    (solver, state)
+}
+
+#[test]
+fn a_linear_shear_flow_over_a_floor_has_its_rate_in_every_row() {
+    let (solver, state) = on_floor(0.0, |x, _| [3.0 * x[1], 0.0]);
+    let mut rows = 0;
+    for (x, k) in state.grains.position.iter().zip(&solver.kinematics) {
+        if x[1] < 0.15 {
+            let rate = k.correction * k.shear;
+            assert!((rate / 3.0 - 1.0).abs() < 2e-3, "{rate} at {x:?}");
+            rows += 1;
+        }
+    }
+    assert_eq!(rows, 300);
+}
+
+#[test]
+fn the_viscous_operator_over_a_floor_is_symmetric() {
+    let (mut solver, state) = on_floor(0.2, |_, noise| *noise);
+    solver.sweep_pressure(&state, 1e-4);
+    let n = state.grains.len();
+    let images: usize = solver.lists.blocks.iter().map(|b| b.images.len()).sum();
+    assert!(images > 300, "{images}");
+    let force = |v: &[Vector<2>]| {
+        let (mut records, mut f) = (vec![Record::default(); n], vec![[0.0; 2]; n]);
+        solver.stress(v, &mut records, false);
+        solver.force(&records, &mut f, false, |_, f| (*f, 0.0));
+        f
+    };
+    let a: Vec<Vector<2>> = state.grains.velocity.clone();
+    let b: Vec<Vector<2>> = a.iter().rev().map(|v| [v[1], v[0]]).collect();
+    let product = |a: &[Vector<2>], b: &[Vector<2>]| -> f64 {
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| a[0] * b[0] + a[1] * b[1])
+            .sum()
+    };
+    let (fa, fb) = (force(&a), force(&b));
+    close(product(&fa, &b), product(&fb, &a), product(&fa, &a).abs());
+    assert!(product(&fa, &a) < 0.0 && product(&fb, &b) < 0.0);
 }
 
 fn steps_agree<const D: usize>(material: fn() -> Material, geometry: Geometry, count: usize) {

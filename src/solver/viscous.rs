@@ -9,6 +9,7 @@ use crate::math::{Four, Lanes, Tensor, Vector, apply, in_lanes, inverse, scale};
 use crate::state::State;
 
 use super::Solver;
+use super::mirror::{Image, add_image_gradient, image_force};
 use super::pair::Block;
 use super::record::{Record, stresses};
 
@@ -23,11 +24,14 @@ impl<const D: usize> Solver<D> {
                     |lanes| for (row, o) in out.iter_mut().enumerate() {
                         let i = first + row;
                         let mut gradient = [[0.0; D]; D];
+                        let mut images: &[Image<D>] = &[];
                         if let Some(w) = walls.next_if(|w| w.row as usize == row) {
+                            images = block.images_of(w);
                             gradient = w.gradient(&v[i], with_walls);
                         }
                         if self.viscosity[i] != 0.0 {
                             self.add_gradient(lanes, block, row, i, v, &mut gradient);
+                            add_image_gradient(images, i, v, &mut gradient);
                             *o = Record::of_stress(&self.row_stress(i, &v[i], &gradient), &v[i]);
                         } else {
                             *o = Record::of_stress(&[[0.0; D]; D], &v[i]);
@@ -115,10 +119,13 @@ impl<const D: usize> Solver<D> {
                         }
                         if let Some(w) = walls.next_if(|w| w.row as usize == row) {
                             let stress = w.stress_force(&own.stress());
+                            let image = image_force(block.images_of(w), &own.stress(), |j| {
+                                records[j].stress()
+                            });
                             let drag = apply(&w.c, &own.velocity());
                             for k in 0..D {
                                 let drive = if with_walls { w.cv[k] } else { 0.0 };
-                                f[k] += stress[k] - 2.0 * share * (drag[k] - drive);
+                                f[k] += stress[k] + image[k] - 2.0 * share * (drag[k] - drive);
                             }
                         }
                         let (value, part) = finish(i, &scale(self.width * self.volume[i], &f));
