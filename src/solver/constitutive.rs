@@ -48,6 +48,21 @@ impl<const D: usize> Solver<D> {
         }
     }
 
+    /// V = m / (rho_0 width) of fluids: their density stands for pressure, and where they lie does not follow it
+    /// (docs/theory.md, "Fluids and saturated beds").
+    pub(super) fn hold_fluid_volumes(&mut self, state: &State<D>) {
+        if !self.has_fluids {
+            return;
+        }
+        let grains = &state.grains;
+        for (i, v) in self.volume.iter_mut().enumerate() {
+            let material = &self.materials[grains.phase[i] as usize];
+            if material.is_fluid() {
+                *v = grains.mass[i] / (material.rest_density() * self.width);
+            }
+        }
+    }
+
     /// Pressures and viscosities from the state and its kinematics.
     pub(super) fn respond(&mut self, state: &State<D>) {
         if self.has_effective_pressure {

@@ -37,10 +37,16 @@ impl<const D: usize> Solver<D> {
         let mut loads = std::mem::take(&mut self.loads);
         loads.resize(n, Quad::default());
         self.workers.each(&mut loads, |i, load| {
+            // The weight that is diffused against is the one that the pressure force bears.
+            let rho = if self.materials[state.grains.phase[i] as usize].is_fluid() {
+                1.0 / self.specific_volume(state, i)
+            } else {
+                state.grains.density[i]
+            };
             *load = Quad([
                 self.pressure[i],
                 self.kinematics[i].shear,
-                state.grains.density[i],
+                rho,
                 self.pair_viscosity[i],
             ]);
         });
