@@ -40,6 +40,8 @@ mod timestep;
 mod validity;
 mod viscous;
 mod wall_friction;
+mod wall_geometry;
+mod wall_row;
 
 pub use devices::{Sink, Source};
 pub use error::SolverError;

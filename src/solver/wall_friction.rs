@@ -88,6 +88,33 @@ fn same_normal<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> bool {
 }
 
 impl<const D: usize> Contact<D> {
+    /// Adds a face that particle i sees to the contacts of its row, which begin at `first`: area [m^2], and sum of area v_w
+    /// over its points [m^3/s].
+    pub(super) fn gather(
+        contacts: &mut Vec<Self>,
+        first: usize,
+        (i, group): (usize, u16),
+        normal: &Vector<D>,
+        area: f64,
+        drive: &Vector<D>,
+    ) {
+        let same = |c: &&mut Self| c.group == group && same_normal(&c.normal, normal);
+        if let Some(contact) = contacts[first..].iter_mut().find(same) {
+            contact.area += area;
+            for k in 0..D {
+                contact.drive[k] += drive[k];
+            }
+        } else {
+            contacts.push(Self {
+                i: i as u32,
+                group,
+                normal: *normal,
+                area,
+                drive: *drive,
+            });
+        }
+    }
+
     /// P a.
     fn along(&self, a: &Vector<D>) -> Vector<D> {
         sub(a, &scale(dot(a, &self.normal), &self.normal))
@@ -95,41 +122,6 @@ impl<const D: usize> Contact<D> {
 }
 
 impl<const D: usize> Solver<D> {
-    /// Adds a wall point to the contacts of row i, which begin at `first`; n the normal there, g = V_i w grad W. Says
-    /// whether the wall has friction.
-    #[inline(always)]
-    pub(super) fn touch(
-        &self,
-        contacts: &mut Vec<Contact<D>>,
-        first: usize,
-        (i, wall): (usize, u32),
-        n: &Vector<D>,
-        g: &Vector<D>,
-    ) -> bool {
-        let group = self.walls.group[wall as usize];
-        if self.walls.groups[group as usize].friction == 0.0 {
-            return false;
-        }
-        let area = -2.0 * dot(g, n) * self.volume[i] * self.width;
-        let drive = scale(area, &self.walls.velocity[wall as usize]);
-        let same = |c: &&mut Contact<D>| c.group == group && same_normal(&c.normal, n);
-        if let Some(contact) = contacts[first..].iter_mut().find(same) {
-            contact.area += area;
-            for k in 0..D {
-                contact.drive[k] += drive[k];
-            }
-        } else {
-            contacts.push(Contact {
-                i: i as u32,
-                group,
-                normal: *n,
-                area,
-                drive,
-            });
-        }
-        true
-    }
-
     /// Makes the friction rows of a step from the contacts of the last sweep.
     pub(super) fn find_friction(&mut self, state: &mut State<D>) {
         if !state.grains.wall_friction {

@@ -1,0 +1,307 @@
+//! Particle i against the wall points that it sees: sums of each face, then what they come to for the row (docs/theory.md, E14,
+//! W4, W5).
+//!
+//! Symbols: x = x_i - x_w, F = W'(r)/r <= 0, g = V_i w F x, v_w velocity of the point, n normal of its face towards the
+//! material, P = n n^T at free slip and 1 at no slip.
+
+use crate::math::{Tensor, Vector, add_outer, apply, dot, scale, sub, trace};
+use crate::state::State;
+
+use super::Solver;
+use super::barrier::Nearness;
+use super::fluid_row::Row;
+use super::pair::WallRow;
+use super::wall_friction::{Contact, Face};
+
+/// Distance to the nearest wall point from which on (W5) cannot act, over the spacing [1]: on the surface it is 0.87 at most, and
+/// even a point missing inside a wall has its neighbours nearer.
+const CLEAR: f64 = 1.1;
+
+/// Sums over the points of one face, those of one wall with one normal, as one particle sees them.
+struct FaceSums<const D: usize> {
+    group: u16,
+    /// Unit normal towards the material; 0 where neither slip nor fluid asks for it.
+    normal: Vector<D>,
+    free_slip: bool,
+    /// sum g.
+    s: Vector<D>,
+    /// sum v_w (x) g.
+    carried: Tensor<D>,
+    /// sum c (P g)(P g)^T, c = 2 (D + 2)/(|g| r).
+    pair: Tensor<D>,
+    /// sum c (P g)(P g)^T v_w.
+    dragged: Vector<D>,
+    /// sum |F| V (n.x)^2 of fluids without slip; else 0.
+    lean: f64,
+}
+
+impl<const D: usize> FaceSums<D> {
+    fn new(group: u16, normal: Vector<D>, free_slip: bool) -> Self {
+        Self {
+            group,
+            normal,
+            free_slip,
+            s: [0.0; D],
+            carried: [[0.0; D]; D],
+            pair: [[0.0; D]; D],
+            dragged: [0.0; D],
+            lean: 0.0,
+        }
+    }
+
+    /// P a.
+    #[inline(always)]
+    fn seen(&self, a: &Vector<D>) -> Vector<D> {
+        if self.free_slip {
+            scale(dot(&self.normal, a), &self.normal)
+        } else {
+            *a
+        }
+    }
+
+    /// Adds a point; `c` is 2 (D + 2)/(|g| r).
+    #[inline(always)]
+    fn add(&mut self, g: &Vector<D>, c: f64, vw: &Vector<D>) {
+        for k in 0..D {
+            self.s[k] += g[k];
+        }
+        let pg = self.seen(g);
+        add_outer(&mut self.pair, c, &pg, &pg);
+        // Most walls stand still.
+        if *vw != [0.0; D] {
+            add_outer(&mut self.carried, 1.0, vw, g);
+            let drive = c * dot(&pg, vw);
+            for k in 0..D {
+                self.dragged[k] += drive * pg[k];
+            }
+        }
+    }
+}
+
+impl<const D: usize> Solver<D> {
+    /// Adds to the sums of row i what the wall points `near` it give, and to `contacts` the faces with friction; `None` where
+    /// there is no wall within the support.
+    pub(super) fn wall_row(
+        &self,
+        state: &State<D>,
+        (i, row): (usize, usize),
+        near: &[u32],
+        sums: &mut Row<D>,
+        contacts: &mut Vec<Contact<D>>,
+    ) -> Option<WallRow<D>> {
+        let first_contact = contacts.len();
+        let grains = &state.grains;
+        let (xi, vi) = (&grains.position[i], &grains.velocity[i]);
+        let support2 = self.kernel.support().powi(2);
+        let dissipation = D as f64 + 2.0;
+        let material = &self.materials[grains.phase[i] as usize];
+        let is_fluid = material.is_fluid();
+        let mut w = WallRow::new(row as u32);
+        let mut flatness = Face::None;
+        let mut face: Option<FaceSums<D>> = None;
+        let mut nearest2 = f64::INFINITY;
+        for &wall in near {
+            let x = self
+                .periodic
+                .difference(xi, &self.walls.position[wall as usize]);
+            let r2 = dot(&x, &x);
+            let weight = self.walls.weight[wall as usize];
+            if r2 >= support2 || r2 == 0.0 || weight == 0.0 {
+                continue;
+            }
+            nearest2 = nearest2.min(r2);
+            let normal = self.face_normal(xi, wall, is_fluid, face.as_ref(), state);
+            let group = self.walls.group[wall as usize];
+            let spec = &self.walls.groups[group as usize];
+            if face
+                .as_ref()
+                .is_none_or(|f| f.group != group || f.normal != normal)
+            {
+                let next = FaceSums::new(group, normal, spec.free_slip);
+                if let Some(done) = face.replace(next) {
+                    flatness = self.add_face(&done, i, (contacts, first_contact), &mut w, flatness);
+                }
+            }
+            let Some(face) = &mut face else { continue };
+            let vf = self.wall_volume(i, wall, weight) * self.kernel.f(r2.sqrt());
+            let g = scale(vf, &x);
+            let vw = &self.walls.velocity[wall as usize];
+            face.add(&g, 2.0 * dissipation / (-vf * r2), vw);
+            if is_fluid && !face.free_slip {
+                face.lean -= vf * dot(&normal, &x).powi(2);
+            }
+            add_outer(&mut sums.moment, -1.0, &x, &g);
+            let v = sub(vi, vw);
+            let seen = face.seen(&v);
+            sums.add_pair(&x, 2.0 * dot(&seen, &x), -vf, self.has_fluids);
+            // Sliding along a free-slip face costs nothing: only the part it sees bounds the step, unless the face
+            // itself comes along.
+            let v = if spec.moves { v } else { seen };
+            sums.speed2 = sums.speed2.max(dot(&v, &v));
+        }
+        let last = face?;
+        let flatness = self.add_face(&last, i, (contacts, first_contact), &mut w, flatness);
+        if nearest2 < (CLEAR * self.numerics.spacing).powi(2) {
+            let nearness = self.nearness(xi, vi, near);
+            w.barrier = self.barrier.push(&nearness, self.sound_speed_of(material));
+            if w.barrier > 0.0 {
+                w.push = nearness.push(w.barrier);
+            }
+        }
+        let wall_gradient = w.gradient(vi, true);
+        for a in 0..D {
+            for c in 0..D {
+                sums.gradient[a][c] += wall_gradient[a][c];
+            }
+        }
+        if let Face::Flat(n) = flatness {
+            // Sliding along it does nothing, whatever the lattices' phase: g along the face adds up to nothing.
+            w.flat = true;
+            w.s = scale(dot(&n, &w.s), &n);
+            return Some(w);
+        }
+        // Divergence takes the whole velocity (a tangential sum over a flat wall vanishes); the strain takes P v.
+        let seen = trace(&wall_gradient);
+        let whole = -2.0 * (dot(vi, &w.s) - w.drive);
+        let share = (whole - seen) / D as f64;
+        for k in 0..D {
+            sums.gradient[k][k] += share;
+        }
+        Some(w)
+    }
+
+    /// Normal of the face that a wall point belongs to, as far as a particle at xi needs it: 0 where neither slip nor fluid asks
+    /// for it. `last` is the face of the point before: one gate has one normal for all its points.
+    #[inline(always)]
+    fn face_normal(
+        &self,
+        xi: &Vector<D>,
+        wall: u32,
+        is_fluid: bool,
+        last: Option<&FaceSums<D>>,
+        state: &State<D>,
+    ) -> Vector<D> {
+        let group = self.walls.group[wall as usize];
+        if !is_fluid && !self.walls.groups[group as usize].free_slip {
+            return [0.0; D];
+        }
+        match last {
+            Some(f) if f.group == group && usize::from(group) >= self.fixed_groups => f.normal,
+            _ => self.wall_normal(xi, wall, state),
+        }
+    }
+
+    /// Adds the sums of a face to those of the row; returns how flat all the row sees is.
+    fn add_face(
+        &self,
+        face: &FaceSums<D>,
+        i: usize,
+        (contacts, first): (&mut Vec<Contact<D>>, usize),
+        w: &mut WallRow<D>,
+        flatness: Face<D>,
+    ) -> Face<D> {
+        let n = &face.normal;
+        for a in 0..D {
+            w.s[a] += face.s[a];
+            w.cv[a] += face.dragged[a];
+            for b in 0..D {
+                w.c[a][b] += face.pair[a][b];
+                let p = if face.free_slip {
+                    n[a] * n[b]
+                } else {
+                    f64::from(u8::from(a == b))
+                };
+                for c in 0..D {
+                    w.k[a][b][c] += p * face.s[c];
+                    w.q[a][c] += p * face.carried[b][c];
+                }
+            }
+        }
+        if self.wall_moves(face.group) {
+            w.drive += trace(&face.carried);
+        }
+        if face.lean > 0.0 {
+            for a in 0..D {
+                w.lean[a][a] += face.lean;
+            }
+            add_outer(&mut w.lean, -face.lean, n, n);
+        }
+        if !face.free_slip || self.walls.groups[face.group as usize].friction == 0.0 {
+            return flatness.with(None);
+        }
+        let to_area = -2.0 * self.volume[i] * self.width;
+        let area = to_area * dot(&face.s, n);
+        let drive = scale(to_area, &apply(&face.carried, n));
+        Contact::gather(contacts, first, (i, face.group), n, area, &drive);
+        flatness.with(Some(*n))
+    }
+
+    /// What (W5) is made of: sums over all wall points near a particle at xi, moving at vi.
+    fn nearness(&self, xi: &Vector<D>, vi: &Vector<D>, near: &[u32]) -> Nearness<D> {
+        let mut nearness = Nearness::NONE;
+        for &wall in near {
+            let (x, r) = self.wall_offset(xi, wall);
+            let weight = self.walls.weight[wall as usize];
+            let against = sub(vi, &self.point_velocity(wall));
+            self.barrier.add(&mut nearness, (&x, r), weight, &against);
+            if let Some((x, r)) = self.wall_image(xi, wall) {
+                self.barrier.add(&mut nearness, (&x, r), weight, &against);
+            }
+        }
+        nearness
+    }
+}
+
+impl<const D: usize> WallRow<D> {
+    fn new(row: u32) -> Self {
+        Self {
+            row,
+            s: [0.0; D],
+            drive: 0.0,
+            k: [[[0.0; D]; D]; D],
+            q: [[0.0; D]; D],
+            c: [[0.0; D]; D],
+            cv: [0.0; D],
+            flat: false,
+            barrier: 0.0,
+            push: [0.0; D],
+            lean: [[0.0; D]; D],
+            lean_less: [[0.0; D]; D],
+            images: (0, 0),
+        }
+    }
+
+    /// Part of the velocity gradient that walls give: -2 (K v - Q); without Q for the linear part.
+    #[inline(always)]
+    pub(super) fn gradient(&self, v: &Vector<D>, with_wall_velocity: bool) -> Tensor<D> {
+        let mut g = [[0.0; D]; D];
+        for a in 0..D {
+            for c in 0..D {
+                let mut s = if with_wall_velocity {
+                    -self.q[a][c]
+                } else {
+                    0.0
+                };
+                for b in 0..D {
+                    s += self.k[a][b][c] * v[b];
+                }
+                g[a][c] = -2.0 * s;
+            }
+        }
+        g
+    }
+
+    /// Force per volume of a stress through walls: 2 K : tau, the adjoint of [`WallRow::gradient`].
+    #[inline(always)]
+    pub(super) fn stress_force(&self, tau: &Tensor<D>) -> Vector<D> {
+        let mut f = [0.0; D];
+        for a in 0..D {
+            for b in 0..D {
+                for c in 0..D {
+                    f[b] += 2.0 * self.k[a][b][c] * tau[a][c];
+                }
+            }
+        }
+        f
+    }
+}
