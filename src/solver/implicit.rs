@@ -21,14 +21,18 @@ pub(super) struct Viscous<const D: usize> {
     pub(super) fixed: Vec<Tensor<D>>,
     /// A search direction and its stress.
     searched: Vec<Record>,
-    jacobi: Vec<Tensor<D>>,
-    residual: Vec<Vector<D>>,
+    pub(super) jacobi: Vec<Tensor<D>>,
+    pub(super) residual: Vec<Vector<D>>,
     /// Jacobi blocks times the residual.
     descent: Vec<Vector<D>>,
     direction: Vec<Vector<D>>,
     product: Vec<Vector<D>>,
     /// First guess of the velocity; after the solve the new velocity [m/s].
     pub(super) velocity: Vec<Vector<D>>,
+    /// Rows that take their viscous force as it is, without the solve (`explicit`); empty if none may.
+    pub(super) explicit: Vec<bool>,
+    /// Rows whose own viscosity does next to nothing in a step; empty in scenes without Newtonian fluids.
+    pub(super) quick: Vec<bool>,
     /// What of the wall friction of each of its rows does not follow the velocity [Pa].
     pub(super) held: Vec<Vector<D>>,
 }
@@ -93,9 +97,10 @@ impl<const D: usize> Solver<D> {
             let (start, a) = (&self.prediction[i].velocity, &acceleration[i]);
             *v = std::array::from_fn(|k| start[k] + dt * a[k]);
         });
-        self.stress(&work.velocity, &mut work.current, true);
+        self.stress(&work.velocity, &mut work.current, true, &[]);
         self.jacobi_blocks(state, dt, &mut work.jacobi);
         self.grip_blocks(dt, &mut work.jacobi);
+        self.find_explicit(state, dt, work);
         let limit = self.solver_limit(state, dt);
         match self.numerics.yield_form {
             YieldForm::Capped => {
@@ -129,8 +134,12 @@ impl<const D: usize> Solver<D> {
     ) -> Result<u32, SolverError> {
         let (workers, mass) = (&self.workers, &state.grains.mass);
         let mut norm2 = self.first_residual(state, dt, work);
+        if norm2.is_finite() {
+            norm2 = self.settle_explicit(norm2, limit, work);
+        }
         let Viscous {
             current,
+            explicit,
             searched,
             jacobi,
             residual,
@@ -164,8 +173,8 @@ impl<const D: usize> Solver<D> {
             workers.each(direction, |i, d| {
                 *d = std::array::from_fn(|k| descent[i][k] + beta * d[k]);
             });
-            self.stress(direction, searched, false);
-            let mut curvature = self.force(searched, product, false, |i, f| {
+            self.stress(direction, searched, false, explicit);
+            let mut curvature = self.force(searched, product, false, explicit, |i, f| {
                 let d = &direction[i];
                 let own = self.inertia(mass[i], i, d);
                 let q: Vector<D> = std::array::from_fn(|k| own[k] - dt * f[k]);
@@ -216,7 +225,7 @@ impl<const D: usize> Solver<D> {
             &*whole
         };
         let mass = &state.grains.mass;
-        let norm2 = self.force(start, residual, true, |i, f| {
+        let norm2 = self.force(start, residual, true, &[], |i, f| {
             let (aim, v) = (&self.prediction[i].velocity, start[i].velocity::<D>());
             let change = self.inertia(mass[i], i, &sub(aim, &v));
             let r: Vector<D> = std::array::from_fn(|k| change[k] + dt * f[k]);

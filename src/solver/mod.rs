@@ -11,6 +11,7 @@ mod barrier;
 mod constitutive;
 mod devices;
 mod error;
+mod explicit;
 mod fluid_row;
 mod grid;
 mod implicit;
@@ -204,7 +205,7 @@ pub struct Solver<const D: usize> {
     /// Pressure between grains, that of saturated material without its pores' [Pa]; empty where it is the pressure.
     effective: Vec<f64>,
     pore: pore::Work,
-    /// Of a full neighbourhood, for dry surfaces of saturated material [1/m^2]; 0 in scenes without.
+    /// sum_j 2 V_j |F| of a full neighbourhood [1/m^2]; 0 in scenes without fluids and pores.
     lattice_sum: f64,
     /// 1 for fluids without yield stress, else 0; empty in scenes without.
     flows: Vec<f64>,
@@ -304,7 +305,7 @@ impl<const D: usize> Solver<D> {
             normal_pressure: Vec::new(),
             effective: Vec::new(),
             pore: pore::Work::default(),
-            lattice_sum: if has_pores {
+            lattice_sum: if has_pores || has_fluids {
                 pore::lattice_sum(&kernel, spacing)
             } else {
                 0.0

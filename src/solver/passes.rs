@@ -199,9 +199,9 @@ impl<const D: usize> Passes<D> {
                 solver.sweep_pressure(state, STEP);
                 self.stage = Stage::Weighted;
             }
-            Pass::Stress => solver.stress(&state.grains.velocity, stressed, false),
+            Pass::Stress => solver.stress(&state.grains.velocity, stressed, false, &[]),
             Pass::Force => {
-                solver.force(stressed, force, false, |_, f| (*f, 0.0));
+                solver.force(stressed, force, false, &[], |_, f| (*f, 0.0));
             }
         }
     }

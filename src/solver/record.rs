@@ -104,6 +104,15 @@ impl Record {
         v
     }
 
+    /// Adds to the velocity of a record of stress.
+    #[inline(always)]
+    pub(super) fn add_velocity<const D: usize>(&mut self, dv: &Vector<D>) {
+        for (k, dv) in dv.iter().enumerate() {
+            let word = stressed::<D>() + k;
+            self.0[word / LANES].0[word % LANES] += dv;
+        }
+    }
+
     /// self += s other, all words.
     #[inline(always)]
     pub(super) fn add_scaled(&mut self, s: f64, other: &Self) {

@@ -110,8 +110,8 @@ fn column(
 fn force(solver: &Solver<2>, v: &[Vector<2>]) -> Vec<Vector<2>> {
     let mut records = vec![Record::default(); v.len()];
     let mut force = vec![[0.0; 2]; v.len()];
-    solver.stress(v, &mut records, false);
-    solver.force(&records, &mut force, false, |_, f| (*f, 0.0));
+    solver.stress(v, &mut records, false, &[]);
+    solver.force(&records, &mut force, false, &[], |_, f| (*f, 0.0));
     force
 }
 

@@ -156,7 +156,7 @@ fn agrees<const D: usize>(material: Material, geometry: Geometry, count: usize) 
         .map(|i| solver.row_stress(i, &v[i], &gradients[i]))
         .collect();
     let mut records = vec![Record::default(); n];
-    solver.stress(v, &mut records, false);
+    solver.stress(v, &mut records, false, &[]);
     let largest = tau.as_flattened().as_flattened();
     let largest = largest.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     assert!(largest > 0.0);
@@ -168,7 +168,7 @@ fn agrees<const D: usize>(material: Material, geometry: Geometry, count: usize) 
     }
     let (mut plain, mut fast): (Vec<Vector<D>>, _) = (vec![[0.0; D]; n], vec![[0.0; D]; n]);
     solver.plain_forces(&pairs, v, &tau, &mut plain);
-    solver.force(&records, &mut fast, false, |i, f| {
+    solver.force(&records, &mut fast, false, &[], |i, f| {
         let mut f = *f;
         for c in &mut f {
             *c /= solver.width * solver.volume[i];
@@ -296,8 +296,8 @@ fn the_viscous_operator_over_a_floor_is_symmetric() {
     assert!(images > 300, "{images}");
     let force = |v: &[Vector<2>]| {
         let (mut records, mut f) = (vec![Record::default(); n], vec![[0.0; 2]; n]);
-        solver.stress(v, &mut records, false);
-        solver.force(&records, &mut f, false, |_, f| (*f, 0.0));
+        solver.stress(v, &mut records, false, &[]);
+        solver.force(&records, &mut f, false, &[], |_, f| (*f, 0.0));
         f
     };
     let a: Vec<Vector<2>> = state.grains.velocity.clone();

@@ -9,13 +9,19 @@ use crate::math::{Four, Lanes, Tensor, Vector, apply, in_lanes, inverse, scale};
 use crate::state::State;
 
 use super::Solver;
-use super::mirror::{Image, add_image_gradient, image_force};
+use super::mirror::{add_image_gradient, image_force};
 use super::pair::Block;
 use super::record::{Record, stresses};
 
 impl<const D: usize> Solver<D> {
-    /// Records of v_i and tau_i = 2 (1 - share) eta_i e_i(v).
-    pub(super) fn stress(&self, v: &[Vector<D>], out: &mut [Record], with_walls: bool) {
+    /// Records of v_i and tau_i = 2 (1 - share) eta_i e_i(v); tau_i = 0 for the rows that `skipped` names, if it is not empty.
+    pub(super) fn stress(
+        &self,
+        v: &[Vector<D>],
+        out: &mut [Record],
+        with_walls: bool,
+        skipped: &[bool],
+    ) {
         self.workers
             .blocks_read(&self.lists.blocks, out, |block, first, out| {
                 let mut walls = block.wall_rows.iter().peekable();
@@ -23,15 +29,14 @@ impl<const D: usize> Solver<D> {
                     self.arch,
                     |lanes| for (row, o) in out.iter_mut().enumerate() {
                         let i = first + row;
-                        let mut gradient = [[0.0; D]; D];
-                        let mut images: &[Image<D>] = &[];
-                        if let Some(w) = walls.next_if(|w| w.row as usize == row) {
-                            images = block.images_of(w);
-                            gradient = w.gradient(&v[i], with_walls);
-                        }
-                        if self.viscosity[i] != 0.0 {
+                        let wall = walls.next_if(|w| w.row as usize == row);
+                        if self.viscosity[i] != 0.0 && !is_among(skipped, i) {
+                            let mut gradient =
+                                wall.map_or([[0.0; D]; D], |w| w.gradient(&v[i], with_walls));
                             self.add_gradient(lanes, block, row, i, v, &mut gradient);
-                            add_image_gradient(images, i, v, &mut gradient);
+                            if let Some(w) = wall {
+                                add_image_gradient(block.images_of(w), i, v, &mut gradient);
+                            }
                             *o = Record::of_stress(&self.row_stress(i, &v[i], &gradient), &v[i]);
                         } else {
                             *o = Record::of_stress(&[[0.0; D]; D], &v[i]);
@@ -91,12 +96,13 @@ impl<const D: usize> Solver<D> {
     }
 
     /// out_i from the viscous force F_i [N] of records of stress and velocity, the pair form's share included; and the
-    /// sum of what `finish(i, F_i)` returns beside it, in a fixed order.
+    /// sum of what `finish(i, F_i)` returns beside it, in a fixed order. F_i = 0 for the rows that `skipped` names.
     pub(super) fn force(
         &self,
         records: &[Record],
         out: &mut [Vector<D>],
         with_walls: bool,
+        skipped: &[bool],
         finish: impl Fn(usize, &Vector<D>) -> (Vector<D>, f64) + Sync,
     ) -> f64 {
         let share = self.numerics.pair_viscosity_share;
@@ -108,6 +114,11 @@ impl<const D: usize> Solver<D> {
                     self.arch,
                     |lanes| for (row, o) in out.iter_mut().enumerate() {
                         let i = first + row;
+                        let wall = walls.next_if(|w| w.row as usize == row);
+                        if is_among(skipped, i) {
+                            *o = finish(i, &[0.0; D]).0;
+                            continue;
+                        }
                         let mut f = if self.geometry.is_axisymmetric() {
                             self.row_force::<_, true>(lanes, block, row, i, records)
                         } else {
@@ -117,7 +128,7 @@ impl<const D: usize> Solver<D> {
                         if self.geometry.is_axisymmetric() {
                             f[0] -= self.ring_drag(i, &own.velocity(), &own.stress(), share);
                         }
-                        if let Some(w) = walls.next_if(|w| w.row as usize == row) {
+                        if let Some(w) = wall {
                             let stress = w.stress_force(&own.stress());
                             let image = image_force(block.images_of(w), &own.stress(), |j| {
                                 records[j].stress()
@@ -213,4 +224,10 @@ impl<const D: usize> Solver<D> {
                 }
             });
     }
+}
+
+/// Whether `rows` names row i; empty: none.
+#[inline(always)]
+fn is_among(rows: &[bool], i: usize) -> bool {
+    rows.get(i).is_some_and(|r| *r)
 }

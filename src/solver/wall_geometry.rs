@@ -8,7 +8,7 @@ use super::Solver;
 impl<const D: usize> Solver<D> {
     /// Whether the points of a wall or gate come along with its velocity: a belt's surface slides, its points stay.
     #[inline(always)]
-    fn wall_moves(&self, group: u16) -> bool {
+    pub(super) fn wall_moves(&self, group: u16) -> bool {
         usize::from(group) >= self.fixed_groups || self.walls.groups[group as usize].moves
     }
 
