@@ -127,10 +127,13 @@ impl<const D: usize> Lists<D> {
             for row in 0..block.rows() {
                 let i = (c * CHUNK + row) as u32;
                 touches[i as usize] = !block.wall_row(row).is_empty();
+                let mut own = root(&mut parent, i);
                 for &j in block.row(row).iter().filter(|&&j| j < i) {
-                    let (a, b) = (root(&mut parent, i), root(&mut parent, j));
+                    let other = root(&mut parent, j);
                     // The smaller index wins: the result does not depend on the order of unions.
-                    parent[a.max(b) as usize] = a.min(b);
+                    let first = own.min(other);
+                    parent[own.max(other) as usize] = first;
+                    own = first;
                 }
             }
         }

@@ -44,9 +44,14 @@ pub(super) struct WallRow<const D: usize> {
 /// itself, g = 0, that fill the last group.
 #[derive(Debug, Default)]
 pub(super) struct Block<const D: usize> {
+    /// Neighbours of all rows; what lies behind the last row's end is left from earlier.
     neighbours: Vec<u32>,
+    /// Wall points of all rows, likewise.
     walls: Vec<u32>,
+    /// Where each row's neighbours and wall points end.
     ends: Vec<(u32, u32)>,
+    /// Where those of the row in hand end.
+    filled: (usize, usize),
     /// Neighbours within the support of the row in hand, room for the longest row.
     pub(super) near: Vec<u32>,
     /// Neighbours of each group.
@@ -65,18 +70,23 @@ pub(super) struct Block<const D: usize> {
     pub(super) contacts: Vec<Contact<D>>,
 }
 
+/// Lets `write` put up to `most` items at `end` and counts them in. Room is made once and kept: it is not cleared for each run.
 #[inline]
-fn append(list: &mut Vec<u32>, most: usize, write: impl FnOnce(&mut [u32]) -> usize) {
-    let start = list.len();
-    list.resize(start + most, 0);
-    let count = write(&mut list[start..]);
-    list.truncate(start + count);
+fn append(
+    list: &mut Vec<u32>,
+    end: &mut usize,
+    most: usize,
+    write: impl FnOnce(&mut [u32]) -> usize,
+) {
+    if list.len() < *end + most {
+        list.resize((*end + most).max(2 * list.len()), 0);
+    }
+    *end += write(&mut list[*end..*end + most]);
 }
 
 impl<const D: usize> Block<D> {
     pub(super) fn clear(&mut self) {
-        self.neighbours.clear();
-        self.walls.clear();
+        self.filled = (0, 0);
         self.ends.clear();
         self.near.clear();
     }
@@ -84,25 +94,28 @@ impl<const D: usize> Block<D> {
     /// Adds to the row in hand those of `most` neighbours that `write` puts in front and counts.
     #[inline]
     pub(super) fn add_neighbours(&mut self, most: usize, write: impl FnOnce(&mut [u32]) -> usize) {
-        append(&mut self.neighbours, most, write);
+        append(&mut self.neighbours, &mut self.filled.0, most, write);
     }
 
     /// As `add_neighbours`, for wall points.
     #[inline]
     pub(super) fn add_walls(&mut self, most: usize, write: impl FnOnce(&mut [u32]) -> usize) {
-        append(&mut self.walls, most, write);
+        append(&mut self.walls, &mut self.filled.1, most, write);
     }
 
     /// Ends the row of particle i: filled up with itself to whole groups.
     pub(super) fn end_row(&mut self, i: u32) {
         let start = self.ends.last().map_or(0, |end| end.0) as usize;
-        let count = (self.neighbours.len() - start).next_multiple_of(LANES);
-        self.neighbours.resize(start + count, i);
+        let listed = self.filled.0 - start;
+        let count = listed.next_multiple_of(LANES);
+        self.add_neighbours(count - listed, |rest| {
+            rest.fill(i);
+            rest.len()
+        });
         if self.near.len() < count {
             self.near.resize(count, 0);
         }
-        self.ends
-            .push((self.neighbours.len() as u32, self.walls.len() as u32));
+        self.ends.push((self.filled.0 as u32, self.filled.1 as u32));
     }
 
     pub(super) fn rows(&self) -> usize {
