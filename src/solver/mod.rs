@@ -402,7 +402,9 @@ impl<const D: usize> Solver<D> {
         if came {
             self.sweep_kinematics_in_valid_lists(state, true);
         }
-        self.seep(state);
+        if came || state.steps.is_multiple_of(pore::EVERY) {
+            self.seep(state);
+        }
         self.respond(state);
         state.time += dt;
         state.steps += 1;
