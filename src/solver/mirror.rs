@@ -39,7 +39,9 @@ pub(super) struct Image<const D: usize> {
 impl<const D: usize> Solver<D> {
     /// Notes which flat face each particle of a fluid sees, if it sees one and nothing else.
     pub(super) fn note_mirrors(&mut self, state: &State<D>) {
-        if !self.has_fluids || self.geometry.is_axisymmetric() {
+        let fixed = &self.walls.groups[..self.fixed_groups];
+        let nothing_sticks = fixed.iter().all(|g| g.free_slip);
+        if !self.has_fluids || nothing_sticks || self.geometry.is_axisymmetric() {
             return;
         }
         let none = Mirror {
