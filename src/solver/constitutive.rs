@@ -48,16 +48,16 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// V = m / (rho_0 width) of fluids: their density stands for pressure, and where they lie does not follow it
+    /// V = m / (rho_0 width) of fluids and saturated beds: their density stands for pressure, and where they lie does not follow it
     /// (docs/theory.md, "Fluids and saturated beds").
-    pub(super) fn hold_fluid_volumes(&mut self, state: &State<D>) {
-        if !self.has_fluids {
+    pub(super) fn hold_volumes(&mut self, state: &State<D>) {
+        if !self.has_fluids && !self.has_pores {
             return;
         }
         let grains = &state.grains;
         for (i, v) in self.volume.iter_mut().enumerate() {
             let material = &self.materials[grains.phase[i] as usize];
-            if material.is_fluid() {
+            if material.is_fluid() || material.is_saturated() {
                 *v = grains.mass[i] / (material.rest_density() * self.width);
             }
         }

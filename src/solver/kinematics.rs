@@ -33,7 +33,7 @@ impl<const D: usize> Solver<D> {
         let n = state.grains.len();
         self.volume.resize(n, 0.0);
         self.update_volumes(&state.grains.mass, &state.grains.swept_density);
-        self.hold_fluid_volumes(state);
+        self.hold_volumes(state);
         self.update_rings(state);
         let mut records = std::mem::take(&mut self.records);
         records.resize(n, Record::default());
