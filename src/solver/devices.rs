@@ -174,6 +174,7 @@ impl<const D: usize> Solver<D> {
                     continue;
                 }
                 let tau = self.viscous.stress(i);
+                let carried = seen.map_or([0.0; D], |w| w.carried);
                 let leant = seen.map_or([0.0; D], |w| self.leant(state, i, &w.lean));
                 for &w in block.wall_row(row) {
                     let group = self.walls.group[w as usize] as usize;
@@ -208,6 +209,13 @@ impl<const D: usize> Solver<D> {
                         let n = self.wall_normal(xi, w, state);
                         let along = sub(&leant, &scale(dot(&n, &leant), &n));
                         part = scale(-vf * dot(&n, &x).powi(2), &along);
+                    }
+                    if carried != [0.0; D] {
+                        // Each point's part of L.
+                        let n = self.wall_normal(xi, w, state);
+                        let t = sub(&x, &scale(dot(&n, &x), &n));
+                        let share = -vf * dt * state.grains.mass[i] * dot(&t, &carried);
+                        part = add(&part, &scale(share, &t));
                     }
                     if barrier > 0.0 {
                         let mut away = self.barrier.slope(&x, r, weight);

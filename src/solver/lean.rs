@@ -1,4 +1,6 @@
-//! Fluids at walls without slip: their shear stress goes on into the wall as momentum says (docs/theory.md, W4).
+//! Fluids at walls: what wall points, which take stress and pressure of the particle that sees them wherever they stand, lack of
+//! it. Without slip shear stress goes on into the wall as momentum says (docs/theory.md, W4); at all walls pressure goes on along
+//! them with its own slope (W7).
 //!
 //! A wall point takes the stress of the particle that sees it. Across the face the shear traction t changes by
 //! dt/dn = rho (a - g)_t + grad_t p, which is what viscous forces leave of momentum along the wall: rho (a - a*)_t, a* the
@@ -11,16 +13,24 @@
 //! a wall gets is that of about 0.7 dp inside, and rows there shear too fast: by 5 % of the stress at 20 rows, which is a
 //! fourth of a yield stress fluid's rate. The wall gets m K (a* - a) beside -F, so that momentum balances.
 //!
-//! Pressure has no part in it, along or across: its force is the adjoint of div v, and what it does to the velocity comes out
-//! of the density. A pressure force 1/(1 - K) times that takes energy from a wall that stands still. Where nothing slips along
-//! a wall only; fluids only: in sand friction would gain and pressure would not.
+//! Where nothing slips along a wall only; fluids only: in sand friction would gain and pressure would not.
+//!
+//! Of a slope of pressure along a wall the first row's neighbours show it 0.65, and points with its own pressure nothing. Its
+//! weight was borne by as much: the row beside the wall of a tank at rest fell at a fourth of g, the water went round, and densities,
+//! which follow div v, kept what that did to them. With points at p_i + grad p . (x_w - x_i),
+//!
+//!   (I - L) (a* - g) = a_p,   L = sum_walls |F_iw| V t t^T,   t = (I - n n^T) x_iw,                         (W7)
+//!
+//! a_p what the sums give. That is a smaller inertia and weight along the wall of a force that stays the adjoint of div v, so that
+//! sound is stable, and the wall gets m L (a* - g). Across the wall all is as before.
 
-use crate::math::{Tensor, Vector, apply, scale, trace};
+use crate::math::{Tensor, Vector, apply, inverse, scale, trace};
 use crate::state::State;
 
 use super::Solver;
+use super::pair::WallRow;
 
-/// Most of a particle's momentum that walls are given [1]: corners and slits would ask for all of it.
+/// Most of a particle's momentum that walls are given, and of a slope that they add [1]: corners and slits would ask for all of it.
 const MOST: f64 = 0.8;
 
 impl<const D: usize> Solver<D> {
@@ -42,6 +52,32 @@ impl<const D: usize> Solver<D> {
                 }
             });
         self.lean = lean;
+    }
+
+    /// Makes of the velocity that a particle beside walls gets from gravity and the sums of pressure the one of (W7), and notes
+    /// what walls add for it. `before`: at the step's start.
+    pub(super) fn carry_slope(
+        &self,
+        before: &Vector<D>,
+        dt: f64,
+        w: &mut WallRow<D>,
+        velocity: &mut Vector<D>,
+    ) {
+        if trace(&w.along) == 0.0 {
+            return;
+        }
+        let lacking = bounded(&w.along);
+        let shown: Tensor<D> = std::array::from_fn(|a| {
+            std::array::from_fn(|b| f64::from(u8::from(a == b)) - lacking[a][b])
+        });
+        let summed: Vector<D> =
+            std::array::from_fn(|a| (velocity[a] - before[a]) / dt - self.gravity[a]);
+        let whole = apply(&inverse(&shown), &summed);
+        for a in 0..D {
+            velocity[a] += dt * (whole[a] - summed[a]);
+        }
+        let kept = trace(&lacking) / trace(&w.along);
+        w.carried = scale(kept, &whole);
     }
 
     /// m (I - K) a.

@@ -33,6 +33,10 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) lean: Tensor<D>,
     /// What images take from it.
     pub(super) lean_less: Tensor<D>,
+    /// L of (W7) before it is bounded: sum |F| V t t^T, t = (I - n n^T) x, of fluids; else 0.
+    pub(super) along: Tensor<D>,
+    /// a* - g of (W7) in this step, times what of L is kept [m/s^2].
+    pub(super) carried: Vector<D>,
     /// Range of its images in the block.
     pub(super) images: (u32, u32),
 }

@@ -69,7 +69,13 @@ impl<const D: usize> Solver<D> {
                     let o = &mut out[w.row as usize];
                     let eta = self.pair_viscosity[i];
                     for k in 0..D {
-                        o.velocity[k] += a * w.s[k] + dt * w.push[k];
+                        o.velocity[k] += a * w.s[k];
+                    }
+                    if self.has_fluids {
+                        self.carry_slope(&state.grains.velocity[i], dt, w, &mut o.velocity);
+                    }
+                    for k in 0..D {
+                        o.velocity[k] += dt * w.push[k];
                         w.cv[k] *= eta;
                         for c in 0..D {
                             w.c[k][c] *= eta;

@@ -33,6 +33,8 @@ struct FaceSums<const D: usize> {
     dragged: Vector<D>,
     /// sum |F| V (n.x)^2 of fluids without slip; else 0.
     lean: f64,
+    /// sum |F| V t t^T of fluids, t = (I - n n^T) x; else 0.
+    along: Tensor<D>,
 }
 
 impl<const D: usize> FaceSums<D> {
@@ -46,6 +48,7 @@ impl<const D: usize> FaceSums<D> {
             pair: [[0.0; D]; D],
             dragged: [0.0; D],
             lean: 0.0,
+            along: [[0.0; D]; D],
         }
     }
 
@@ -127,8 +130,13 @@ impl<const D: usize> Solver<D> {
             let g = scale(vf, &x);
             let vw = &self.walls.velocity[wall as usize];
             face.add(&g, 2.0 * dissipation / (-vf * r2), vw);
-            if is_fluid && !face.free_slip {
-                face.lean -= vf * dot(&normal, &x).powi(2);
+            if is_fluid {
+                let depth = dot(&normal, &x);
+                let t = sub(&x, &scale(depth, &normal));
+                add_outer(&mut face.along, -vf, &t, &t);
+                if !face.free_slip {
+                    face.lean -= vf * depth.powi(2);
+                }
             }
             add_outer(&mut sums.moment, -1.0, &x, &g);
             let v = sub(vi, vw);
@@ -205,6 +213,7 @@ impl<const D: usize> Solver<D> {
             w.s[a] += face.s[a];
             w.cv[a] += face.dragged[a];
             for b in 0..D {
+                w.along[a][b] += face.along[a][b];
                 w.c[a][b] += face.pair[a][b];
                 let p = if face.free_slip {
                     n[a] * n[b]
@@ -267,6 +276,8 @@ impl<const D: usize> WallRow<D> {
             push: [0.0; D],
             lean: [[0.0; D]; D],
             lean_less: [[0.0; D]; D],
+            along: [[0.0; D]; D],
+            carried: [0.0; D],
             images: (0, 0),
         }
     }

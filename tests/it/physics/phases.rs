@@ -154,6 +154,59 @@ until = 1
     ))
 }
 
+/// Pressure is the weight of what lies above right up to the walls, corners included, water lies still, and walls bear its weight.
+#[test]
+fn a_tank_of_water_presses_by_its_weight_beside_its_walls() {
+    for slip in ["no_slip", "free_slip", "friction"] {
+        let friction = if slip == "friction" {
+            "\nwall_friction = 0.5"
+        } else {
+            ""
+        };
+        let mut unit = Unit::new(&parse(&format!(
+            r#"
+name = "tank"
+[domain]
+lower = [-0.1, -0.1]
+upper = [0.4, 0.4]
+[numerics]
+spacing = "15 mm"
+sleep = false
+[materials.water]
+law = "fluid"
+preset = "water"
+[bodies.water]
+material = "water"
+box = {{ lower = [0, 0], upper = [0.3, 0.3] }}
+[walls.tank]
+polyline = [[0, 0.4], [0, 0], [0.3, 0], [0.3, 0.4]]
+slip = "{slip}"{friction}
+[gauges.weight]
+kind = "force"
+on = "wall.tank"
+[run]
+step = 0.1
+until = 1.5
+"#
+        )));
+        unit.run_to(1.5);
+        let view = unit.component.particles();
+        let (mut sum, mut fastest) = (0.0, 0.0_f64);
+        for ((x, v), p) in view.position.iter().zip(&view.velocity).zip(&view.pressure) {
+            sum += (f64::from(*p) - 1000.0 * G * (0.3 - f64::from(x[1]))).powi(2);
+            fastest = fastest.max(f64::from(v[0].hypot(v[1])));
+        }
+        let rms = (sum / view.pressure.len() as f64).sqrt() / (1000.0 * G * 0.3);
+        let weight = unit.get("gauge.weight.force_y") / (-1000.0 * G * 0.09);
+        println!(
+            "{slip}: pressure off by {rms:.4} rho g H rms, {fastest:.4} m/s, weight {weight:.4}"
+        );
+        assert!(rms < 0.01, "{slip}: {rms}");
+        assert!(fastest < 0.02 * (G * 0.3).sqrt(), "{slip}: {fastest} m/s");
+        assert!((weight - 1.0).abs() < 0.01, "{slip}: {weight}");
+    }
+}
+
 #[test]
 fn water_over_silt_rests_with_its_weight() {
     let mut unit = Unit::new(&layers("free_slip"));
