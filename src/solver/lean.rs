@@ -23,8 +23,11 @@
 //!
 //! a_p what the sums give. That is a smaller inertia and weight along the wall of a force that stays the adjoint of div v, so that
 //! sound is stable, and the wall gets m L (a* - g). Across the wall all is as before.
+//!
+//! |a* - g| counts up to |g|, what bears weight: inertia that comes back when a particle leaves the wall is energy, and where water
+//! hits a wall at many g that was more than it lost (a random scene gained 2.3 % of its energy, 0.4 % with the bound).
 
-use crate::math::{Tensor, Vector, apply, inverse, scale, trace};
+use crate::math::{Tensor, Vector, apply, inverse, norm, scale, trace};
 use crate::state::State;
 
 use super::Solver;
@@ -67,14 +70,18 @@ impl<const D: usize> Solver<D> {
             return;
         }
         let lacking = bounded(&w.along);
-        let shown: Tensor<D> = std::array::from_fn(|a| {
-            std::array::from_fn(|b| f64::from(u8::from(a == b)) - lacking[a][b])
-        });
+        let mut shown = lacking.map(|row| scale(-1.0, &row));
+        for (a, row) in shown.iter_mut().enumerate() {
+            row[a] += 1.0;
+        }
         let summed: Vector<D> =
             std::array::from_fn(|a| (velocity[a] - before[a]) / dt - self.gravity[a]);
         let whole = apply(&inverse(&shown), &summed);
+        let cut = (self.gravity_norm / norm(&whole).max(f64::MIN_POSITIVE)).min(1.0);
+        let whole = scale(cut, &whole);
+        let added = apply(&lacking, &whole);
         for a in 0..D {
-            velocity[a] += dt * (whole[a] - summed[a]);
+            velocity[a] += dt * added[a];
         }
         let kept = trace(&lacking) / trace(&w.along);
         w.carried = scale(kept, &whole);
