@@ -24,10 +24,10 @@
 //! a_p what the sums give. That is a smaller inertia and weight along the wall of a force that stays the adjoint of div v, so that
 //! sound is stable, and the wall gets m L (a* - g). Across the wall all is as before.
 //!
-//! |a* - g| counts up to |g|, what bears weight: inertia that comes back when a particle leaves the wall is energy, and where water
-//! hits a wall at many g that was more than it lost (a random scene gained 2.3 % of its energy, 0.4 % with the bound).
+//! Of a* - g what bears weight counts, along -g up to |g|, and less of it the faster a particle rises along the wall: a wall that
+//! stands still must lift nothing. Taken whole, two of 200 random scenes (mud that hits its tub) gained 2 and 10 % of their energy.
 
-use crate::math::{Tensor, Vector, apply, inverse, norm, scale, trace};
+use crate::math::{Tensor, Vector, apply, dot, inverse, scale, sub, trace};
 use crate::state::State;
 
 use super::Solver;
@@ -35,6 +35,9 @@ use super::pair::WallRow;
 
 /// Most of a particle's momentum that walls are given, and of a slope that they add [1]: corners and slits would ask for all of it.
 const MOST: f64 = 0.8;
+
+/// Speed along a wall, against gravity and over c0, from which on it bears no weight [1].
+const RISING: f64 = 0.01;
 
 impl<const D: usize> Solver<D> {
     /// Gathers K of every particle after a sweep; nothing in scenes without fluids.
@@ -77,8 +80,13 @@ impl<const D: usize> Solver<D> {
         let summed: Vector<D> =
             std::array::from_fn(|a| (velocity[a] - before[a]) / dt - self.gravity[a]);
         let whole = apply(&inverse(&shown), &summed);
-        let cut = (self.gravity_norm / norm(&whole).max(f64::MIN_POSITIVE)).min(1.0);
-        let whole = scale(cut, &whole);
+        let g2 = dot(&self.gravity, &self.gravity).max(f64::MIN_POSITIVE);
+        let borne = (-dot(&whole, &self.gravity) / g2).clamp(0.0, 1.0);
+        // Along the walls, against them.
+        let sliding = sub(&apply(&w.along, before), &w.along_drive);
+        let rise = -dot(&sliding, &self.gravity) / (g2.sqrt() * trace(&w.along));
+        let resting = 1.0 - rise / (RISING * self.numerics.sound_speed);
+        let whole = scale(-borne * resting.clamp(0.0, 1.0), &self.gravity);
         let added = apply(&lacking, &whole);
         for a in 0..D {
             velocity[a] += dt * added[a];

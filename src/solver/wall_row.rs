@@ -35,6 +35,8 @@ struct FaceSums<const D: usize> {
     lean: f64,
     /// sum |F| V t t^T of fluids, t = (I - n n^T) x; else 0.
     along: Tensor<D>,
+    /// sum |F| V t (t.v_w) of fluids; else 0.
+    along_drive: Vector<D>,
 }
 
 impl<const D: usize> FaceSums<D> {
@@ -49,6 +51,7 @@ impl<const D: usize> FaceSums<D> {
             dragged: [0.0; D],
             lean: 0.0,
             along: [[0.0; D]; D],
+            along_drive: [0.0; D],
         }
     }
 
@@ -134,6 +137,10 @@ impl<const D: usize> Solver<D> {
                 let depth = dot(&normal, &x);
                 let t = sub(&x, &scale(depth, &normal));
                 add_outer(&mut face.along, -vf, &t, &t);
+                let drive = -vf * dot(&t, &self.walls.velocity[wall as usize]);
+                for k in 0..D {
+                    face.along_drive[k] += drive * t[k];
+                }
                 if !face.free_slip {
                     face.lean -= vf * depth.powi(2);
                 }
@@ -212,6 +219,7 @@ impl<const D: usize> Solver<D> {
         for a in 0..D {
             w.s[a] += face.s[a];
             w.cv[a] += face.dragged[a];
+            w.along_drive[a] += face.along_drive[a];
             for b in 0..D {
                 w.along[a][b] += face.along[a][b];
                 w.c[a][b] += face.pair[a][b];
@@ -277,6 +285,7 @@ impl<const D: usize> WallRow<D> {
             lean: [[0.0; D]; D],
             lean_less: [[0.0; D]; D],
             along: [[0.0; D]; D],
+            along_drive: [0.0; D],
             carried: [0.0; D],
             images: (0, 0),
         }
