@@ -19,13 +19,16 @@ mod kinematics;
 mod lean;
 mod lists;
 mod mirror;
+mod motion;
 mod numerics;
+mod outputs;
 mod pack;
 mod pair;
 mod paper_a;
 mod paper_b;
 mod passes;
 mod plain;
+mod plan;
 mod plastic;
 mod pore;
 mod pressure;
@@ -48,9 +51,11 @@ pub use devices::{Sink, Source};
 pub use error::SolverError;
 pub use grid::Periodic;
 pub use numerics::{Numerics, Scheme, YieldForm};
+pub use outputs::three;
 pub use paper_a::PaperA;
 pub use paper_b::PaperB;
 pub use passes::{Pass, Passes};
+pub use plan::{OnMove, Plan, StepBound, StepInputs, SubStep};
 pub use validity::Validity;
 
 use std::sync::Arc;
@@ -59,7 +64,7 @@ use crate::boundary::{Mover, Plate, WallPoints};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
 use crate::math::{Arch, Geometry, Quad, Vector, Workers, norm};
-use crate::state::{Grains, State};
+use crate::state::State;
 
 use barrier::Barrier;
 use constitutive::Response;
@@ -73,87 +78,6 @@ use wall_friction::Friction;
 
 /// Skin of the neighbour lists over h [1].
 const SKIN: f64 = 0.3;
-
-/// What bounds an internal step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum StepBound {
-    /// courant h / c0.
-    Acoustic,
-    /// Relative motion of neighbours or walls.
-    Motion,
-    /// Explicit viscosity (schemes `paper_a` and `paper_b`).
-    Viscous,
-    /// The end of the communication step.
-    Communication,
-}
-
-impl StepBound {
-    /// Name for people.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            StepBound::Acoustic => "acoustic",
-            StepBound::Motion => "motion",
-            StepBound::Viscous => "viscous",
-            StepBound::Communication => "communication",
-        }
-    }
-}
-
-/// What a solver is made for: everything about a scene that does not change while it runs.
-#[derive(Clone, Debug)]
-pub struct Plan<const D: usize> {
-    /// Numerical choices.
-    pub numerics: Numerics,
-    /// Gravity [m/s^2].
-    pub gravity: Vector<D>,
-    /// What coordinates stand for.
-    pub geometry: Geometry,
-    /// Lower corner of the domain [m].
-    pub lower: Vector<D>,
-    /// Upper corner of the domain [m].
-    pub upper: Vector<D>,
-    /// Periodic axes.
-    pub periodic: Periodic<D>,
-    /// Materials by phase.
-    pub materials: Vec<Material>,
-    /// Points of the fixed walls; groups hold walls, then gates.
-    pub walls: WallPoints<D>,
-    /// Distance of each of these points behind its wall's surface [m]; only scheme `paper_a` needs it, else empty. Those of
-    /// scheme `paper_b` are elements of the surface: their weight is length, or area in space, over that of a spacing.
-    pub ghost_depth: Vec<f64>,
-    /// Walls that move as a whole.
-    pub movers: Vec<Mover<D>>,
-    /// Gates.
-    pub plates: Vec<Plate<D>>,
-    /// Inflows.
-    pub sources: Vec<Source<D>>,
-    /// Outflows.
-    pub sinks: Vec<Sink<D>>,
-}
-
-/// Inputs over one internal step.
-#[derive(Clone, Copy, Debug)]
-pub struct StepInputs<'a> {
-    /// Opening wanted of each gate, 0 to 1.
-    pub openings: &'a [f64],
-    /// Rate of each inflow [kg/s].
-    pub rates: &'a [f64],
-}
-
-/// Sees each move of an internal step: positions before it [m], and the particles after it.
-pub type OnMove<'a, const D: usize> = dyn FnMut(&[Vector<D>], &Grains<D>) + 'a;
-
-/// What one internal step did.
-#[derive(Clone, Copy, Debug)]
-pub struct SubStep {
-    /// Its length [s].
-    pub dt: f64,
-    /// What bound it.
-    pub bound: StepBound,
-    /// Iterations of the viscous solve.
-    pub iterations: u32,
-}
 
 /// Steps a [`State`]. Holds the plan, threads and derived data; nothing that a later bit depends on.
 #[derive(Debug)]
@@ -447,127 +371,6 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// v and x to the end of the step (symplectic Euler), and the density's diffusion before lists may reorder rows.
-    fn move_grains(&mut self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
-        let (new, prediction) = (&self.viscous.velocity, &self.prediction);
-        let is_bad = |i: usize| !new[i].iter().all(|c| c.is_finite());
-        if let Some(bad) = self.workers.first_bad(new.len(), is_bad) {
-            return Err(self.not_finite(state, "velocity", |n| n != bad));
-        }
-        let grains = &mut state.grains;
-        self.before.clone_from(&grains.position);
-        let (x, v) = (&mut grains.position, &mut grains.velocity);
-        let shift = &self.shift;
-        self.workers.both(x, v, |i, x, v| {
-            *v = new[i];
-            for k in 0..D {
-                x[k] += dt * v[k];
-            }
-            if let Some(shift) = shift.get(i) {
-                for k in 0..D {
-                    x[k] += dt * shift[k];
-                }
-            }
-            []
-        });
-        let (a, rho) = (&mut grains.viscous_acceleration, &mut grains.density);
-        self.workers.both(a, rho, |i, a, rho| {
-            *a = std::array::from_fn(|k| (new[i][k] - prediction[i].velocity[k]) / dt);
-            *rho += dt * prediction[i].diffusion;
-            []
-        });
-        if self.geometry.is_axisymmetric() {
-            for i in 0..grains.len() {
-                if grains.position[i][0] < 0.0 {
-                    grains.mirror(i);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn wrap(&self, position: &mut [Vector<D>]) {
-        if self.periodic.length.iter().any(|l| *l > 0.0) {
-            self.workers.each(position, |_, x| self.periodic.wrap(x));
-        }
-    }
-
-    /// Periodic sides, and the check that nothing is lost.
-    fn keep_inside(&self, state: &mut State<D>) -> Result<(), SolverError> {
-        let grains = &mut state.grains;
-        self.wrap(&mut grains.position);
-        let is_lost = |i: usize| {
-            let x = &grains.position[i];
-            let inside = (0..D).all(|k| {
-                self.periodic.length[k] > 0.0 || (x[k] >= self.lower[k] && x[k] <= self.upper[k])
-            });
-            !inside && !grains.drained[i]
-        };
-        match self.workers.first_bad(grains.len(), is_lost) {
-            None => Ok(()),
-            Some(i) => Err(SolverError::Lost {
-                particle: grains.id[i],
-                time: state.time,
-                position: three(&grains.position[i]),
-                velocity: three(&grains.velocity[i]),
-            }),
-        }
-    }
-
-    /// Periodic sides and lists that hold, after a move of the reference schemes, whose walls stand still.
-    fn settle(&mut self, state: &mut State<D>) -> Result<(), SolverError> {
-        self.keep_inside(state)?;
-        let walled = !self.walls.is_empty();
-        if self
-            .lists
-            .outdated(&state.grains, &self.periodic, 0.0, walled, &self.workers)
-        {
-            self.renew_lists(state);
-        }
-        Ok(())
-    }
-
-    fn sweep_kinematics_in_valid_lists(&mut self, state: &mut State<D>, renew: bool) {
-        let travel = self
-            .plates
-            .iter()
-            .zip(&state.gates)
-            .map(|(p, g)| (g.opening - g.listed_opening).abs() * p.length)
-            .fold(0.0, f64::max);
-        let moved = state.pose.now - state.pose.listed;
-        let travel = self
-            .movers
-            .iter()
-            .fold(travel, |t, m| t.max(m.travel(moved)));
-        if renew
-            || self.lists.outdated(
-                &state.grains,
-                &self.periodic,
-                travel,
-                !self.walls.is_empty(),
-                &self.workers,
-            )
-        {
-            self.renew_lists(state);
-        }
-        let grains = &mut state.grains;
-        grains.swept_density.clone_from(&grains.density);
-        self.sweep_kinematics(state);
-    }
-
-    fn renew_lists(&mut self, state: &mut State<D>) {
-        self.lists.sort(&mut state.grains, &self.periodic);
-        state.pose.listed = state.pose.now;
-        for gate in &mut state.gates {
-            gate.listed_opening = gate.opening;
-        }
-        for (plate, gate) in self.plates.iter().zip(&state.gates) {
-            plate.place(&mut self.walls, gate.opening, gate.rate);
-        }
-        self.lists
-            .build(&state.grains, &self.walls, &self.periodic, &self.workers);
-    }
-
     fn derive(&mut self, state: &State<D>) {
         match self.numerics.scheme {
             Scheme::Implicit => {
@@ -594,94 +397,4 @@ impl<const D: usize> Solver<D> {
             position: state.grains.position.get(i).map_or([0.0; 3], three),
         }
     }
-
-    /// Pressure of each particle [Pa].
-    #[must_use]
-    pub fn pressure(&self) -> &[f64] {
-        &self.pressure
-    }
-
-    /// What momentum feels of the pressure of each particle: with bulk friction, where a material has it [Pa].
-    pub(crate) fn normal_pressure(&self) -> &[f64] {
-        if self.normal_pressure.is_empty() {
-            &self.pressure
-        } else {
-            &self.normal_pressure
-        }
-    }
-
-    /// Pore pressure of each particle of a state that this solver has just stepped, started or resumed [Pa]; 0 for what is
-    /// not saturated.
-    #[must_use]
-    pub fn pore_pressure(&self, state: &State<D>, i: usize) -> f64 {
-        if matches!(self.numerics.scheme, Scheme::PaperB(_)) {
-            let material = &self.materials[state.grains.phase[i] as usize];
-            return if material.is_saturated() {
-                self.pressure[i] - self.effective[i]
-            } else {
-                0.0
-            };
-        }
-        state
-            .grains
-            .pore_pressure
-            .get(i)
-            .map_or(0.0, |p| p.max(0.0))
-    }
-
-    /// The material of a particle.
-    #[must_use]
-    pub fn material_of(&self, state: &State<D>, i: usize) -> &Material {
-        &self.materials[state.grains.phase[i] as usize]
-    }
-
-    /// |tau| = sqrt(tau:tau/2) of a particle of a state that this solver has just stepped, started or resumed [Pa].
-    #[must_use]
-    pub fn shear_stress(&self, state: &State<D>, i: usize) -> f64 {
-        let (k, material) = (&self.kinematics[i], self.material_of(state, i));
-        let exact = matches!(self.numerics.scheme, Scheme::Implicit)
-            && matches!(self.numerics.yield_form, YieldForm::Exact { .. })
-            && !material.is_newtonian();
-        let stress = if exact {
-            self.geometry.size(&state.grains.stress[i])
-        } else {
-            self.viscosity[i] * k.shear
-        };
-        // A fluid's viscosity and stress are those that work on the plain rate.
-        if material.is_fluid() && matches!(self.numerics.scheme, Scheme::Implicit) {
-            stress / k.correction
-        } else {
-            stress
-        }
-    }
-
-    /// Inertial number of each particle [1].
-    #[must_use]
-    pub fn inertial_number(&self) -> &[f64] {
-        &self.inertial_number
-    }
-
-    /// Wall and gate points where they are now.
-    #[must_use]
-    pub fn walls(&self) -> &WallPoints<D> {
-        &self.walls
-    }
-
-    /// The kernel.
-    #[must_use]
-    pub fn kernel(&self) -> &WendlandC2<D> {
-        &self.kernel
-    }
-
-    /// Threads at work.
-    #[must_use]
-    pub fn workers(&self) -> Arc<Workers> {
-        Arc::clone(&self.workers)
-    }
-}
-
-/// A point as three numbers, for messages and pictures.
-#[must_use]
-pub fn three<const D: usize>(x: &Vector<D>) -> [f64; 3] {
-    std::array::from_fn(|k| if k < D { x[k] } else { 0.0 })
 }

@@ -1,0 +1,130 @@
+//! Particles move, stay inside, and find their neighbours again.
+
+use crate::math::Vector;
+use crate::state::State;
+
+use super::outputs::three;
+use super::{Solver, SolverError};
+
+impl<const D: usize> Solver<D> {
+    /// v and x to the end of the step (symplectic Euler), and the density's diffusion before lists may reorder rows.
+    pub(super) fn move_grains(&mut self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
+        let (new, prediction) = (&self.viscous.velocity, &self.prediction);
+        let is_bad = |i: usize| !new[i].iter().all(|c| c.is_finite());
+        if let Some(bad) = self.workers.first_bad(new.len(), is_bad) {
+            return Err(self.not_finite(state, "velocity", |n| n != bad));
+        }
+        let grains = &mut state.grains;
+        self.before.clone_from(&grains.position);
+        let (x, v) = (&mut grains.position, &mut grains.velocity);
+        let shift = &self.shift;
+        self.workers.both(x, v, |i, x, v| {
+            *v = new[i];
+            for k in 0..D {
+                x[k] += dt * v[k];
+            }
+            if let Some(shift) = shift.get(i) {
+                for k in 0..D {
+                    x[k] += dt * shift[k];
+                }
+            }
+            []
+        });
+        let (a, rho) = (&mut grains.viscous_acceleration, &mut grains.density);
+        self.workers.both(a, rho, |i, a, rho| {
+            *a = std::array::from_fn(|k| (new[i][k] - prediction[i].velocity[k]) / dt);
+            *rho += dt * prediction[i].diffusion;
+            []
+        });
+        if self.geometry.is_axisymmetric() {
+            for i in 0..grains.len() {
+                if grains.position[i][0] < 0.0 {
+                    grains.mirror(i);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn wrap(&self, position: &mut [Vector<D>]) {
+        if self.periodic.length.iter().any(|l| *l > 0.0) {
+            self.workers.each(position, |_, x| self.periodic.wrap(x));
+        }
+    }
+
+    /// Periodic sides, and the check that nothing is lost.
+    pub(super) fn keep_inside(&self, state: &mut State<D>) -> Result<(), SolverError> {
+        let grains = &mut state.grains;
+        self.wrap(&mut grains.position);
+        let is_lost = |i: usize| {
+            let x = &grains.position[i];
+            let inside = (0..D).all(|k| {
+                self.periodic.length[k] > 0.0 || (x[k] >= self.lower[k] && x[k] <= self.upper[k])
+            });
+            !inside && !grains.drained[i]
+        };
+        match self.workers.first_bad(grains.len(), is_lost) {
+            None => Ok(()),
+            Some(i) => Err(SolverError::Lost {
+                particle: grains.id[i],
+                time: state.time,
+                position: three(&grains.position[i]),
+                velocity: three(&grains.velocity[i]),
+            }),
+        }
+    }
+
+    /// Periodic sides and lists that hold, after a move of the reference schemes, whose walls stand still.
+    pub(super) fn settle(&mut self, state: &mut State<D>) -> Result<(), SolverError> {
+        self.keep_inside(state)?;
+        let walled = !self.walls.is_empty();
+        if self
+            .lists
+            .outdated(&state.grains, &self.periodic, 0.0, walled, &self.workers)
+        {
+            self.renew_lists(state);
+        }
+        Ok(())
+    }
+
+    pub(super) fn sweep_kinematics_in_valid_lists(&mut self, state: &mut State<D>, renew: bool) {
+        let travel = self
+            .plates
+            .iter()
+            .zip(&state.gates)
+            .map(|(p, g)| (g.opening - g.listed_opening).abs() * p.length)
+            .fold(0.0, f64::max);
+        let moved = state.pose.now - state.pose.listed;
+        let travel = self
+            .movers
+            .iter()
+            .fold(travel, |t, m| t.max(m.travel(moved)));
+        if renew
+            || self.lists.outdated(
+                &state.grains,
+                &self.periodic,
+                travel,
+                !self.walls.is_empty(),
+                &self.workers,
+            )
+        {
+            self.renew_lists(state);
+        }
+        let grains = &mut state.grains;
+        grains.swept_density.clone_from(&grains.density);
+        self.sweep_kinematics(state);
+    }
+
+    pub(super) fn renew_lists(&mut self, state: &mut State<D>) {
+        self.lists.sort(&mut state.grains, &self.periodic);
+        state.pose.listed = state.pose.now;
+        for gate in &mut state.gates {
+            gate.listed_opening = gate.opening;
+        }
+        for (plate, gate) in self.plates.iter().zip(&state.gates) {
+            plate.place(&mut self.walls, gate.opening, gate.rate);
+        }
+        self.lists
+            .build(&state.grains, &self.walls, &self.periodic, &self.workers);
+    }
+}

@@ -1,0 +1,89 @@
+//! What a solver is made for, what goes into an internal step, and what it says of it.
+
+use crate::boundary::{Mover, Plate, WallPoints};
+use crate::material::Material;
+use crate::math::{Geometry, Vector};
+use crate::state::Grains;
+
+use super::{Numerics, Periodic, Sink, Source};
+
+/// What a solver is made for: everything about a scene that does not change while it runs.
+#[derive(Clone, Debug)]
+pub struct Plan<const D: usize> {
+    /// Numerical choices.
+    pub numerics: Numerics,
+    /// Gravity [m/s^2].
+    pub gravity: Vector<D>,
+    /// What coordinates stand for.
+    pub geometry: Geometry,
+    /// Lower corner of the domain [m].
+    pub lower: Vector<D>,
+    /// Upper corner of the domain [m].
+    pub upper: Vector<D>,
+    /// Periodic axes.
+    pub periodic: Periodic<D>,
+    /// Materials by phase.
+    pub materials: Vec<Material>,
+    /// Points of the fixed walls; groups hold walls, then gates.
+    pub walls: WallPoints<D>,
+    /// Distance of each of these points behind its wall's surface [m]; only scheme `paper_a` needs it, else empty. Those of
+    /// scheme `paper_b` are elements of the surface: their weight is length, or area in space, over that of a spacing.
+    pub ghost_depth: Vec<f64>,
+    /// Walls that move as a whole.
+    pub movers: Vec<Mover<D>>,
+    /// Gates.
+    pub plates: Vec<Plate<D>>,
+    /// Inflows.
+    pub sources: Vec<Source<D>>,
+    /// Outflows.
+    pub sinks: Vec<Sink<D>>,
+}
+
+/// Inputs over one internal step.
+#[derive(Clone, Copy, Debug)]
+pub struct StepInputs<'a> {
+    /// Opening wanted of each gate, 0 to 1.
+    pub openings: &'a [f64],
+    /// Rate of each inflow [kg/s].
+    pub rates: &'a [f64],
+}
+
+/// Sees each move of an internal step: positions before it [m], and the particles after it.
+pub type OnMove<'a, const D: usize> = dyn FnMut(&[Vector<D>], &Grains<D>) + 'a;
+
+/// What one internal step did.
+#[derive(Clone, Copy, Debug)]
+pub struct SubStep {
+    /// Its length [s].
+    pub dt: f64,
+    /// What bound it.
+    pub bound: StepBound,
+    /// Iterations of the viscous solve.
+    pub iterations: u32,
+}
+
+/// What bounds an internal step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum StepBound {
+    /// courant h / c0.
+    Acoustic,
+    /// Relative motion of neighbours or walls.
+    Motion,
+    /// Explicit viscosity (schemes `paper_a` and `paper_b`).
+    Viscous,
+    /// The end of the communication step.
+    Communication,
+}
+
+impl StepBound {
+    /// Name for people.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            StepBound::Acoustic => "acoustic",
+            StepBound::Motion => "motion",
+            StepBound::Viscous => "viscous",
+            StepBound::Communication => "communication",
+        }
+    }
+}
