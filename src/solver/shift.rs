@@ -11,8 +11,8 @@
 //! on it. Velocities do not change; the shift ends at walls, whose points count in C and M. Nothing pays for what it lifts: where
 //! the particles that go up gain more than those that go down lose, their way up is cut to that share (SH1).
 //!
-//! Kinetic energy of `cases/hydrostatic.toml` with water and `shifting = 0.5` after 1 s: 90 mJ with [B] 19 and 20, 12 without
-//! shifts at surfaces, 1.9 with (SH1) as well; 1.6 mJ without shifting.
+//! Before walls bore weight along themselves (`lean`) a tank of water at rest had 90 mJ after 1 s with [B] 19 and 20, 12 without
+//! shifts at surfaces, 1.9 with (SH1) as well, 1.6 without shifting; docs/theory.md has what is left now.
 
 use crate::math::{Tensor, Vector, add_outer, dot, norm, scale};
 use crate::state::State;

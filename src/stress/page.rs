@@ -237,6 +237,6 @@ fn faults() -> String {
 fn missing() -> String {
     "## What is not tried\n\nS22 (convergence over three resolutions) needs more than 500 particles: it is part of `sandgate validate`. \
      S23 (gravity flips) and S24 (a floor that vibrates) need gravity and walls whose motion changes with time; there are \
-     none. Sweeps use one thread below 2,500 particles, so that only kind `threads` compares numbers of threads."
+     none. Sweeps use one thread below 512 particles, so that only kind `threads` compares numbers of threads."
         .to_owned()
 }
