@@ -7,9 +7,11 @@ use std::thread::JoinHandle;
 /// Rows per chunk. Part of the results: partial sums are formed per chunk, so it must not depend on the machine.
 pub const CHUNK: usize = 128;
 
-/// Sweeps of fewer rows run in the calling thread: handing them round costs more than it saves (a column of 1856
-/// particles took 4.7 CPU seconds on two threads and 4.1 on one, in no less time). Results do not depend on it.
-const PARALLEL_FROM: usize = 2500;
+/// Sweeps of fewer rows run in the calling thread: handing them round costs more than it saves. Results do not depend on it.
+/// Sweeps over pairs ([`Workers::blocks`] and its like) take some 100 ns a row, the others some ns: with 2500 for both a column
+/// of 1856 particles had nothing of a second thread (8.2 s), with these it takes 6.6 s, a dam of 1318 particles 2.7 s for 3.8.
+const PAIRS_FROM: usize = 512;
+const ROWS_FROM: usize = 8192;
 
 /// Number of chunks of n rows.
 fn chunks(n: usize) -> usize {
@@ -85,14 +87,19 @@ impl Workers {
         self.pool.as_ref().map_or(1, |pool| pool.threads.len())
     }
 
+    /// The pool, if sweeps over the pairs of so many rows are worth it.
+    fn pool_for_pairs(&self, rows: usize) -> Option<&Pool> {
+        self.pool.as_ref().filter(|_| rows >= PAIRS_FROM)
+    }
+
     /// The pool, if so many rows are worth it.
-    fn pool_for(&self, rows: usize) -> Option<&Pool> {
-        self.pool.as_ref().filter(|_| rows >= PARALLEL_FROM)
+    fn pool_for_rows(&self, rows: usize) -> Option<&Pool> {
+        self.pool.as_ref().filter(|_| rows >= ROWS_FROM)
     }
 
     /// Runs many sweeps of `rows` rows inside the pool, which is entered once for all of them.
     pub fn install<R: Send>(&self, rows: usize, f: impl FnOnce() -> R + Send) -> R {
-        match self.pool_for(rows) {
+        match self.pool_for_pairs(rows) {
             Some(pool) => pool.run(f),
             None => f(),
         }
@@ -100,7 +107,7 @@ impl Workers {
 
     /// out[i] written by f(i, &mut out[i]).
     pub fn each<T: Send>(&self, out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
-        match self.pool_for(out.len()) {
+        match self.pool_for_rows(out.len()) {
             None => out.iter_mut().enumerate().for_each(|(i, o)| f(i, o)),
             Some(pool) => pool.run(|| {
                 out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, part)| {
@@ -119,7 +126,7 @@ impl Workers {
         out: &mut [T],
         f: impl Fn(&mut B, usize, &mut [T]) + Sync,
     ) {
-        match self.pool_for(out.len()) {
+        match self.pool_for_pairs(out.len()) {
             None => {
                 for (c, (b, part)) in blocks.iter_mut().zip(out.chunks_mut(CHUNK)).enumerate() {
                     f(b, c * CHUNK, part);
@@ -142,7 +149,7 @@ impl Workers {
         out: &mut [T],
         f: impl Fn(&B, usize, &mut [T]) + Sync,
     ) {
-        match self.pool_for(out.len()) {
+        match self.pool_for_pairs(out.len()) {
             None => {
                 for (c, (b, part)) in blocks.iter().zip(out.chunks_mut(CHUNK)).enumerate() {
                     f(b, c * CHUNK, part);
@@ -165,7 +172,7 @@ impl Workers {
         out: &mut [T],
         f: impl Fn(&B, usize, &mut [T]) -> f64 + Sync,
     ) -> f64 {
-        match self.pool_for(out.len()) {
+        match self.pool_for_pairs(out.len()) {
             None => blocks
                 .iter()
                 .zip(out.chunks_mut(CHUNK))
@@ -200,7 +207,7 @@ impl Workers {
             sum
         };
         let added = |sum: [f64; K], part: [f64; K]| crate::math::add(&sum, &part);
-        match self.pool_for(a.len()) {
+        match self.pool_for_rows(a.len()) {
             None => a
                 .chunks_mut(CHUNK)
                 .zip(b.chunks_mut(CHUNK))
@@ -222,7 +229,7 @@ impl Workers {
     /// What f gives for the chunks of 0..n, in their order.
     fn chunks<R: Send>(&self, n: usize, f: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
         let range = |c: usize| c * CHUNK..((c + 1) * CHUNK).min(n);
-        match self.pool_for(n) {
+        match self.pool_for_rows(n) {
             None => (0..chunks(n)).map(|c| f(range(c))).collect(),
             Some(pool) => pool.run(|| {
                 (0..chunks(n))
@@ -297,7 +304,7 @@ mod tests {
     #[test]
     fn sweeps_use_threads_of_their_own_also_outside_install() {
         let workers = Workers::new(3);
-        let mut seen = vec![0; PARALLEL_FROM];
+        let mut seen = vec![0; ROWS_FROM];
         workers.each(&mut seen, |_, threads| {
             *threads = rayon::current_num_threads()
         });
