@@ -15,6 +15,7 @@ mod silted_dams;
 mod silted_depths;
 mod slump;
 mod surge;
+mod thin_layer;
 mod two_layers;
 mod yield_profile;
 
