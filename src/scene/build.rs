@@ -136,6 +136,8 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
     let up = up_axis(scene);
     let jitter = scene.numerics.jitter;
     let rings = scene.dimension == Dimension::Axisymmetric;
+    // With the packing of the start (`solver/pack.rs`), which evens what it leaves uneven beside walls.
+    let staggered = jitter > 0.0 && !rings && scene.numerics.scheme == Scheme::Implicit;
     // Rings of half a spacing move half as far: the mass is that of the place, and the section's area follows from it.
     let reach = |axis: usize, place: &Point| {
         let dp = scene.numerics.spacing;
@@ -154,6 +156,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
             body.level.map(|l| (up, l)),
             scene.numerics.spacing,
             D,
+            staggered,
         );
         let flow = steady_flow(scene, body);
         let bulk = flow

@@ -1,4 +1,5 @@
-//! Shape and spacing to particle places: a square lattice, first row half a spacing inside the faces.
+//! Shape and spacing to particle places: a square lattice, first row half a spacing inside the faces; or the same with every
+//! other row half a spacing aside.
 
 use super::Shape;
 
@@ -15,12 +16,16 @@ pub struct Lattice {
 ///
 /// Boxes are filled exactly: their spacing is stretched to a whole number of rows an axis. Other shapes keep the
 /// spacing and take the places that lie inside.
+///
+/// `staggered`: rows across the last axis are moved to and fro by a quarter of a spacing along the others. Rows of a square
+/// lattice under load stand on top of each other and slide into the gaps of their neighbours in the end; these lie there.
 #[must_use]
 pub fn lattice(
     shape: &Shape,
     level: Option<(usize, f64)>,
     spacing: f64,
     dimensions: usize,
+    staggered: bool,
 ) -> Lattice {
     let (lower, mut upper) = shape.bounds();
     if let Some((axis, height)) = level {
@@ -42,11 +47,18 @@ pub fn lattice(
             spacing
         };
     }
+    let last = dimensions - 1;
+    // Counted from the origin, so that rows of bodies side by side go on.
+    let first_row = (lower[last] / step[last]).round();
+    let aside = |row: usize| {
+        let odd = (first_row + row as f64).rem_euclid(2.0) == 1.0;
+        if odd { 0.25 } else { -0.25 }
+    };
     let mut points = Vec::new();
     for c in 0..count[2] {
         for b in 0..count[1] {
             for a in 0..count[0] {
-                let x = [
+                let mut x = [
                     lower[0] + (a as f64 + 0.5) * step[0],
                     lower[1] + (b as f64 + 0.5) * step[1],
                     if dimensions == 3 {
@@ -55,6 +67,11 @@ pub fn lattice(
                         0.0
                     },
                 ];
+                if staggered {
+                    for k in 0..last {
+                        x[k] += aside([a, b, c][last]) * step[k];
+                    }
+                }
                 let below = level.is_none_or(|(axis, height)| x[axis] < height);
                 if below && (exact || shape.contains(&x)) {
                     points.push(x);

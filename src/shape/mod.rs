@@ -118,7 +118,7 @@ mod tests {
             height: 0.3,
             quarter,
         };
-        let count = |quarter| lattice(&column(quarter), None, 0.05, 3).points.len();
+        let count = |quarter| lattice(&column(quarter), None, 0.05, 3, false).points.len();
         assert_eq!(4 * count(true), count(false));
         assert_eq!(column(true).bounds().0, [1.0, 2.0, 0.0]);
         assert!(
@@ -132,7 +132,27 @@ mod tests {
             lower: [0.0; 3],
             upper: [0.2, 0.1, 0.0],
         };
-        let l = lattice(&shape, None, 0.0049, 2);
-        assert!((l.cell_volume * l.points.len() as f64 - 0.02).abs() < 1e-15);
+        for staggered in [false, true] {
+            let l = lattice(&shape, None, 0.0049, 2, staggered);
+            assert!((l.cell_volume * l.points.len() as f64 - 0.02).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn staggered_rows_lie_half_a_spacing_aside_and_go_on_from_body_to_body() {
+        let places = |lower: f64, upper: f64| {
+            let shape = Shape::Box {
+                lower: [0.0, lower, 0.0],
+                upper: [0.4, upper, 0.0],
+            };
+            lattice(&shape, None, 0.1, 2, true).points
+        };
+        let whole = places(-0.3, 0.2);
+        let parts = [places(-0.3, -0.1), places(-0.1, 0.2)].concat();
+        for (a, b) in whole.iter().zip(&parts) {
+            assert!((a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12);
+        }
+        assert!((whole[4][0] - whole[0][0]).abs() - 0.05 < 1e-12 && whole[0][0] != whole[4][0]);
+        assert!(whole.iter().all(|x| x[0] > 0.02 && x[0] < 0.38));
     }
 }

@@ -63,7 +63,7 @@ pub struct Numerics {
     pub solver_max_iterations: u32,
     /// Whether a scene at rest sleeps until an input asks for something; default true.
     pub sleep: bool,
-    /// Random displacement of the starting lattice over dp [1]; default 0.1.
+    /// Random displacement of the starting lattice over dp [1], which is staggered unless this is 0; default 0.1.
     pub jitter: f64,
     /// Seed of that displacement.
     pub seed: u64,

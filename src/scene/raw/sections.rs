@@ -121,7 +121,7 @@ table! {
         optional solver_max_iterations: Whole, in Range::within(1.0, 1e6), default 5000;
         /// Whether a scene in which nothing moves is not computed until an input changes. Results differ by less than 1e-4 of the height of the material.
         optional sleep: Flag, default true;
-        /// Random displacement of the starting lattice, over the spacing.
+        /// Random displacement of the starting lattice, over the spacing. Every other row is then half a spacing aside, and places are evened out. 0, scenes of rings and the schemes of the papers: a square lattice as it is.
         optional jitter: Ratio, in Range::within(0.0, 0.4), default 0.1;
         /// Seed of that displacement.
         optional seed: Whole, default 1;
