@@ -53,6 +53,7 @@ fn a_gate_wakes_a_silo() {
         awake.step();
     }
     let force = |u: &Unit| u.get("gauge.gate_force.force_y");
+    // Sleep may come before forces have settled (docs/theory.md, "Sleep"): what is kept is the force of that moment.
     let then = force(&awake);
     for unit in [&mut asleep, &mut awake] {
         unit.run_to(1.0);
