@@ -2,17 +2,25 @@
 //!
 //! Quiet is a step in which the root mean square of speeds is below 3e-6 c0 (3e-5 of the speed of a fall from the scene's
 //! height, as c0 is chosen), no particle is faster than 1e-4 c0, gates are where they should be, and nothing flows in.
-//! After [`QUIET_STEPS`] of them the particles stand still and time passes in one step, forces on walls as they were. A
-//! gate told to move or an inflow told to run wakes the scene. Scenes with moving walls or without walls never sleep.
+//! A window is [`QUIET_STEPS`] of them in a row. Once forces on walls agree in two windows that follow each other, the
+//! particles stand still and time passes in one step, forces as they were: grains come to rest long before friction has
+//! settled what each wall carries (docs/theory.md, "Sleep").
+//! A gate told to move or an inflow told to run wakes the scene. Scenes with moving walls or without walls never sleep.
 
 use crate::boundary::WallPoints;
-use crate::math::dot;
+use crate::math::{Vector, dot};
 use crate::state::{Grains, RestState, State};
 
 use super::{Numerics, Solver, StepBound, StepInputs, SubStep};
 
-/// Quiet steps before a scene sleeps: a wave crosses 100 h meanwhile.
+/// Quiet steps of a window: a wave crosses 100 h meanwhile.
 const QUIET_STEPS: u32 = 200;
+
+/// Most by which a steady force on a wall changes from one window to the next, over itself [1].
+const FORCE_DRIFT: f64 = 1e-3;
+
+/// Share of the largest force that smaller forces are measured by [1].
+const FORCE_FLOOR: f64 = 0.1;
 
 /// Root mean square speed of a quiet scene, over c0 [1].
 const QUIET_SPEED: f64 = 3e-6;
@@ -70,8 +78,12 @@ impl<const D: usize> Solver<D> {
         let rest = &mut state.rest;
         rest.quiet_steps += 1;
         rest.quiet_time += dt;
-        rest.force.resize(before.len(), [0.0; D]);
-        for (sum, (after, before)) in rest.force.iter_mut().zip(state.impulse.iter().zip(before)) {
+        rest.impulse.resize(before.len(), [0.0; D]);
+        for (sum, (after, before)) in rest
+            .impulse
+            .iter_mut()
+            .zip(state.impulse.iter().zip(before))
+        {
             for k in 0..D {
                 sum[k] += after[k] - before[k];
             }
@@ -79,12 +91,18 @@ impl<const D: usize> Solver<D> {
         if rest.quiet_steps < QUIET_STEPS {
             return;
         }
-        rest.asleep = true;
         let time = rest.quiet_time;
-        for force in &mut rest.force {
-            *force = force.map(|sum| sum / time);
+        let force = rest.impulse.iter().map(|sum| sum.map(|s| s / time));
+        let force: Vec<_> = force.collect();
+        let asleep = is_steady(&rest.force, &force);
+        *rest = RestState {
+            asleep,
+            force,
+            ..RestState::default()
+        };
+        if asleep {
+            state.grains.velocity.fill([0.0; D]);
         }
-        state.grains.velocity.fill([0.0; D]);
     }
 
     fn is_quiet(&self, grains: &Grains<D>) -> bool {
@@ -110,4 +128,15 @@ impl<const D: usize> Solver<D> {
             .all(|(g, wanted)| (g.opening - wanted).abs() < 1e-9)
             && inputs.rates.iter().all(|r| *r == 0.0)
     }
+}
+
+/// Whether the forces of two windows agree; `earlier` is empty if there was no window before.
+fn is_steady<const D: usize>(earlier: &[Vector<D>], later: &[Vector<D>]) -> bool {
+    let size = |f: &Vector<D>| dot(f, f).sqrt();
+    let floor = FORCE_FLOOR * later.iter().map(size).fold(0.0, f64::max);
+    earlier.len() == later.len()
+        && earlier.iter().zip(later).all(|(a, b)| {
+            let change = std::array::from_fn(|k| b[k] - a[k]);
+            size(&change) <= FORCE_DRIFT * size(b).max(floor)
+        })
 }

@@ -51,13 +51,16 @@ pub struct State<const D: usize> {
 /// Sleep of a scene at rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RestState<const D: usize> {
-    /// Quiet steps in a row.
+    /// Quiet steps of this window so far.
     pub quiet_steps: u32,
     /// Whether nothing is computed until an input changes.
     pub asleep: bool,
     /// Time of those steps [s].
     pub quiet_time: f64,
-    /// Asleep: mean force of the quiet steps on each wall, then each gate [N]. Before: its impulse over them so far [N s].
+    /// Impulse of those steps on each wall, then each gate [N s].
+    #[serde(with = "flat")]
+    pub impulse: Vec<Vector<D>>,
+    /// Mean force of the window before on each wall, then each gate [N]; empty if that was not quiet. Asleep: of the last one.
     #[serde(with = "flat")]
     pub force: Vec<Vector<D>>,
 }

@@ -34,36 +34,47 @@ fn a_heap_that_sleeps_is_the_heap_that_does_not() {
     assert_eq!(asleep.get("solver.steps"), steps);
 }
 
+/// A small silo, closed.
+fn silo(numerics: &str) -> Unit {
+    let numerics = format!("spacing = \"6.25 mm\"\n{numerics}");
+    let edits = [("spacing = \"3.125 mm\"", numerics.as_str())];
+    Unit::new(&case("silo_gate", &edits))
+}
+
+fn gate_force(unit: &Unit) -> f64 {
+    unit.get("gauge.gate_force.force_y")
+}
+
+/// Sand is quiet long before friction has settled what a wall carries: sleep waits for that, however the grains lie.
+#[test]
+fn forces_have_settled_before_sleep() {
+    for start in ["seed = 2", "seed = 3", "jitter = 0.0"] {
+        let [asleep, awake] = ["true", "false"].map(|sleep| {
+            let mut unit = silo(&format!("sleep = {sleep}\n{start}"));
+            unit.run_to(1.0);
+            gate_force(&unit)
+        });
+        println!("{start}: gate force {asleep} N asleep, {awake} N awake");
+        assert!((asleep / awake - 1.0).abs() < 5e-3);
+    }
+}
+
 /// A closed silo sleeps; its gate wakes it, and it then discharges as one that was never asleep. Forces stay while it
 /// sleeps, and a saved sleeper sleeps on.
 #[test]
 fn a_gate_wakes_a_silo() {
-    let silo = |sleep: &str| {
-        let numerics = format!("spacing = \"6.25 mm\"\nsleep = {sleep}");
-        Unit::new(&case(
-            "silo_gate",
-            &[("spacing = \"3.125 mm\"", numerics.as_str())],
-        ))
-    };
-    let (mut asleep, mut awake) = (silo("true"), silo("false"));
-    let sleeps = |u: &Unit| u.component.particles().asleep.iter().all(|a| *a == 1);
-    while !sleeps(&asleep) {
-        assert!(asleep.component.time() < 1.0, "it never slept");
-        asleep.step();
-        awake.step();
-    }
-    let force = |u: &Unit| u.get("gauge.gate_force.force_y");
-    // Sleep may come before forces have settled (docs/theory.md, "Sleep"): what is kept is the force of that moment.
-    let then = force(&awake);
+    let (mut asleep, mut awake) = (silo("sleep = true"), silo("sleep = false"));
     for unit in [&mut asleep, &mut awake] {
         unit.run_to(1.0);
     }
+    assert!(asleep.component.particles().asleep.iter().all(|a| *a == 1));
     println!(
-        "gate force {} N asleep; {then} N awake when it fell asleep, {} N now",
-        force(&asleep),
-        force(&awake)
+        "gate force {} N asleep, {} N awake",
+        gate_force(&asleep),
+        gate_force(&awake)
     );
-    assert!((force(&asleep) / then - 1.0).abs() < 5e-3);
+    // The force of resting sand on a gate still drifts by some 1e-3 as it settles.
+    assert!((gate_force(&asleep) / gate_force(&awake) - 1.0).abs() < 5e-3);
 
     let saved = asleep.component.save().unwrap();
     for unit in [&mut asleep, &mut awake] {
