@@ -119,7 +119,7 @@ table! {
         optional solver_tolerance: Ratio, in Range::within(1e-14, 0.1), default 3e-4;
         /// Most iterations of a viscous solve.
         optional solver_max_iterations: Whole, in Range::within(1.0, 1e6), default 5000;
-        /// Whether a scene in which nothing moves is not computed until an input changes. Results differ by less than 1e-4 of the height of the material.
+        /// Whether a scene in which nothing moves is not computed until an input changes. Heights and fronts differ by less than 1e-4 of the height of the material, forces on walls by less than 1 %.
         optional sleep: Flag, default true;
         /// Random displacement of the starting lattice, over the spacing. Every other row is then half a spacing aside, and places are evened out. 0, scenes of rings and the schemes of the papers: a square lattice as it is.
         optional jitter: Ratio, in Range::within(0.0, 0.4), default 0.1;
