@@ -97,6 +97,6 @@ pub struct ParticleView {
     pub inertial_number: Vec<f32>,
     /// Phase: index of the material.
     pub phase: Vec<u8>,
-    /// Whether the particle sleeps (always 0 until sleeping exists).
+    /// 1 while the scene sleeps, else 0.
     pub asleep: Vec<u8>,
 }

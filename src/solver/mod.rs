@@ -326,7 +326,7 @@ impl<const D: usize> Solver<D> {
         if came {
             self.sweep_kinematics_in_valid_lists(state, true);
         }
-        if came || state.steps.is_multiple_of(pore::EVERY) {
+        if came || state.steps.is_multiple_of(self.numerics.seepage_interval) {
             self.seep(state);
         }
         self.respond(state);

@@ -63,6 +63,8 @@ pub struct Numerics {
     pub solver_max_iterations: u32,
     /// Whether a scene at rest sleeps until an input asks for something; default true.
     pub sleep: bool,
+    /// Steps from one solve of the seepage to the next, at least 1; default 4.
+    pub seepage_interval: u64,
     /// Random displacement of the starting lattice over dp [1], which is staggered unless this is 0; default 0.1.
     pub jitter: f64,
     /// Seed of that displacement.

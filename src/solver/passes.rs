@@ -385,6 +385,7 @@ fn numerics() -> Numerics {
         solver_tolerance: 3e-4,
         solver_max_iterations: 500,
         sleep: false,
+        seepage_interval: 1,
         jitter: 0.0,
         seed: 1,
     }

@@ -18,10 +18,6 @@ use super::pair::Block;
 /// first row and 0.91 to 0.99 in the second, for h/dp of 2 to 1.3.
 const SURFACE: f64 = 0.8;
 
-/// Steps from one solve of the seepage to the next: pores follow the water above within four acoustic steps, 0.3 dp/H of the time in
-/// which water falls its own depth H (c0 = 10 sqrt(g H)): 1.6 % at 20 rows, 0.3 % at 100.
-pub(super) const EVERY: u64 = 4;
-
 /// What the residual may be, over that of an error of a spacing's buoyant weight [1].
 const TOLERANCE: f64 = 1e-3;
 

@@ -58,6 +58,7 @@ impl Lift<'_> {
             solver_max_iterations: u32::try_from(raw.solver_max_iterations.as_ref()?.value.0)
                 .unwrap_or(u32::MAX),
             sleep: raw.sleep.as_ref()?.value.0,
+            seepage_interval: raw.seepage_interval.as_ref()?.value.0,
             jitter: raw.jitter.as_ref()?.value.0,
             seed: raw.seed.as_ref()?.value.0,
         })

@@ -456,6 +456,38 @@ fn water_left_out_of_the_viscous_solve_flows_as_in_it() {
     }
 }
 
+/// Pore pressure is solved in every fourth step; solved in every step, levels are the same.
+#[test]
+fn seepage_left_out_of_three_steps_in_four_changes_no_level() {
+    let levels = |interval: &str| {
+        let edit = format!("spacing = \"15 mm\"\nseepage_interval = {interval}");
+        let mut unit = Unit::new(&case(
+            "silted_dam_reduced",
+            &[("spacing = \"15 mm\"", &edit)],
+        ));
+        unit.set("gate.dam.opening", 1.0);
+        let mut levels = Vec::new();
+        for k in 1..=20 {
+            unit.run_to(0.05 * f64::from(k));
+            levels
+                .push(["gauge.level_behind.depth", "gauge.silt_behind.depth"].map(|n| unit.get(n)));
+        }
+        levels
+    };
+    let (every, fourth) = (levels("1"), levels("4"));
+    assert_ne!(every, fourth);
+    for k in 0..2 {
+        let sum: f64 = every
+            .iter()
+            .zip(&fourth)
+            .map(|(a, b)| (a[k] - b[k]).powi(2))
+            .sum();
+        let rms = (sum / every.len() as f64).sqrt() / 0.3;
+        println!("level {k}: rms of the difference over H {rms:.5}");
+        assert!(rms < 0.01, "{rms}");
+    }
+}
+
 fn run(scene: &Scene, time: f64) -> (State<2>, State<2>) {
     let (_, start) = scene::build::<2>(scene).unwrap();
     (start, solve(scene, time).1)
