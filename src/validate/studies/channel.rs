@@ -3,11 +3,9 @@
 use crate::validate::chart::{Chart, Curve, Look};
 use crate::validate::report::number;
 use crate::validate::template::{Template, point, points, rectangle};
-use crate::validate::{
-    Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study, Table,
-};
+use crate::validate::{Effort, Figure, Member, Recording, Report, Results, Study, Table};
 
-use super::yield_profile::Layer;
+use super::yield_profile::{CLAY, Fluid, Layer, last_quarter, rows};
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -28,15 +26,7 @@ const TEMPLATE: &str = include_str!("../../../cases/validation/channel.toml");
 /// A fluid and what drives it.
 #[derive(Clone, Copy, Debug)]
 struct Flow {
-    name: &'static str,
-    /// [kg/m^3]
-    density: f64,
-    /// K [Pa s^n].
-    consistency: f64,
-    /// n.
-    index: f64,
-    /// tau_0 [Pa].
-    yield_stress: f64,
+    fluid: Fluid,
     /// G [Pa/m].
     force: f64,
     /// End [s]: shear-thinning fluids take long.
@@ -45,54 +35,49 @@ struct Flow {
 
 const FLOWS: [Flow; 4] = [
     Flow {
-        name: "newton",
-        density: 1000.0,
-        consistency: 1.0,
-        index: 1.0,
-        yield_stress: 0.0,
+        fluid: Fluid {
+            name: "newton",
+            density: 1000.0,
+            consistency: 1.0,
+            index: 1.0,
+            yield_stress: 0.0,
+        },
         force: 1000.0,
         until: 1.6,
     },
     Flow {
-        name: "bingham",
-        density: 1000.0,
-        consistency: 1.0,
-        index: 1.0,
-        yield_stress: 10.0,
+        fluid: Fluid {
+            name: "bingham",
+            density: 1000.0,
+            consistency: 1.0,
+            index: 1.0,
+            yield_stress: 10.0,
+        },
         force: 1000.0,
         until: 1.6,
     },
     Flow {
-        name: "power",
-        density: 1000.0,
-        consistency: 2.0,
-        index: 0.5,
-        yield_stress: 0.0,
+        fluid: Fluid {
+            name: "power",
+            density: 1000.0,
+            consistency: 2.0,
+            index: 0.5,
+            yield_stress: 0.0,
+        },
         force: 500.0,
         until: 4.0,
     },
     Flow {
-        name: "clay",
-        density: 1540.0,
-        consistency: 4.472,
-        index: 0.472,
-        yield_stress: 30.0,
+        fluid: CLAY,
         force: 2500.0,
         until: 1.6,
     },
 ];
 
-/// Rows from wall to middle.
-fn rows(effort: Effort) -> [u32; 3] {
-    effort.pick([10, 20, 40], [4, 6, 8])
-}
-
 impl Flow {
     fn layer(&self) -> Layer {
         Layer {
-            consistency: self.consistency,
-            index: self.index,
-            yield_stress: self.yield_stress,
+            fluid: self.fluid,
             force: self.force,
             thickness: HALF_WIDTH,
         }
@@ -102,15 +87,16 @@ impl Flow {
         let dp = HALF_WIDTH / f64::from(rows);
         let (length, height) = (10.0 * dp, 2.0 * HALF_WIDTH);
         let edge = 6.0 * dp;
-        let text = Template::new(TEMPLATE)?
+        let text = self
+            .fluid
+            .pour(Template::new(TEMPLATE)?)
             .with("domain.lower", point(0.0, -edge))
             .with("domain.upper", point(length, height + edge))
-            .with("domain.gravity", point(self.force / self.density, -0.3))
+            .with(
+                "domain.gravity",
+                point(self.force / self.fluid.density, -0.3),
+            )
             .with("numerics.spacing", dp)
-            .with("materials.fluid.density", self.density)
-            .with("materials.fluid.consistency", self.consistency)
-            .with("materials.fluid.flow_index", self.index)
-            .with("materials.fluid.yield_stress", self.yield_stress)
             .with("bodies.fluid.box", rectangle([0.0, 0.0], [length, height]))
             .with("walls.low.polyline", points(&[[0.0, 0.0], [length, 0.0]]))
             .with(
@@ -119,12 +105,11 @@ impl Flow {
             )
             .with("run.until", self.until)
             .text()?;
-        let times = (0..5).map(|k| self.until * (0.75 + 0.0625 * f64::from(k)));
         Ok(Member::new(
-            format!("{}_{rows}", self.name),
+            format!("{}_{rows}", self.fluid.name),
             text,
             &["energy.kinetic"],
-            times.collect(),
+            last_quarter(self.until),
         ))
     }
 }
@@ -156,53 +141,25 @@ fn analyse(results: &Results) -> Result<Report, String> {
     let counts = rows(results.effort);
     for flow in &FLOWS {
         let found = counts.map(|n| {
-            let recording = results.finished(&format!("{}_{n}", flow.name));
+            let recording = results.finished(&format!("{}_{n}", flow.fluid.name));
             recording.and_then(|r| {
                 let rows = profile(r).map(|(y, u)| (y.abs(), u));
                 flow.layer().errors(rows)
             })
         });
         for (n, errors) in counts.iter().zip(found) {
-            if let Some((l2, spread)) = errors {
-                let plug = if flow.yield_stress > 0.0 {
-                    number(spread)
-                } else {
-                    "-".to_owned()
-                };
-                table
-                    .rows
-                    .push(vec![flow.name.to_owned(), n.to_string(), number(l2), plug]);
-            }
+            let Some((l2, spread)) = errors else { continue };
+            table.rows.push(vec![
+                flow.fluid.name.to_owned(),
+                n.to_string(),
+                number(l2),
+                flow.fluid.spread_cell(spread),
+            ]);
         }
-        let l2 = |k: usize| found[k].map(|f| f.0);
-        report.metrics.push(Metric::new(
-            format!("{}: L2 of velocity, {} rows", flow.name, counts[1]),
-            l2(1),
-            Rule::AtMost(0.01),
-            "asked at 20 rows to the middle",
-        ));
-        report.metrics.push(Metric::new(
-            format!(
-                "{}: order from {} to {} rows",
-                flow.name, counts[0], counts[2]
-            ),
-            l2(0).zip(l2(2)).map(|(coarse, fine)| {
-                (coarse / fine).ln() / (f64::from(counts[2]) / f64::from(counts[0])).ln()
-            }),
-            Rule::AtLeast(1.5),
-            "asked",
-        ));
-        if flow.yield_stress > 0.0 {
-            report.metrics.push(Metric::new(
-                format!(
-                    "{}: spread of the plug's speed, {} rows",
-                    flow.name, counts[1]
-                ),
-                found[1].map(|f| f.1),
-                Rule::AtMost(1e-3),
-                "a plug is rigid",
-            ));
-        }
+        let asked = "asked at 20 rows to the middle";
+        report
+            .metrics
+            .extend(flow.fluid.judge(counts, found, asked));
     }
     report.tables.push(table);
     report.figures.push(figure(results, counts[1])?);
@@ -219,16 +176,16 @@ fn figure(results: &Results, rows: u32) -> Result<Figure, String> {
             (1e3 * y, layer.velocity(y.abs()) / fastest)
         });
         curves.push(Curve::new(
-            format!("{}, exact", flow.name),
+            format!("{}, exact", flow.fluid.name),
             exact.collect(),
             Look::Thin,
             k,
         ));
-        if let Some(recording) = results.finished(&format!("{}_{rows}", flow.name)) {
+        if let Some(recording) = results.finished(&format!("{}_{rows}", flow.fluid.name)) {
             let dots = profile(recording).step_by(7);
             let dots = dots.map(|(y, u)| (1e3 * y, u / fastest)).collect();
             curves.push(Curve::new(
-                format!("{}, computed", flow.name),
+                format!("{}, computed", flow.fluid.name),
                 dots,
                 Look::Dots,
                 k,

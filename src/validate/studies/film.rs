@@ -7,7 +7,7 @@ use crate::validate::{
     Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study, Table,
 };
 
-use super::yield_profile::Layer;
+use super::yield_profile::{CLAY, Fluid, Layer, last_quarter, rows};
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -29,15 +29,7 @@ const TEMPLATE: &str = include_str!("../../../cases/validation/film.toml");
 /// A film.
 #[derive(Clone, Copy, Debug)]
 struct Film {
-    name: &'static str,
-    /// [kg/m^3]
-    density: f64,
-    /// K [Pa s^n].
-    consistency: f64,
-    /// n [1].
-    index: f64,
-    /// tau_0 [Pa].
-    yield_stress: f64,
+    fluid: Fluid,
     /// [m]
     depth: f64,
     /// End [s]: shear-thinning fluids take long.
@@ -46,67 +38,64 @@ struct Film {
 
 const FILMS: [Film; 4] = [
     Film {
-        name: "newton",
-        density: 1000.0,
-        consistency: 2.0,
-        index: 1.0,
-        yield_stress: 0.0,
+        fluid: Fluid {
+            name: "newton",
+            density: 1000.0,
+            consistency: 2.0,
+            index: 1.0,
+            yield_stress: 0.0,
+        },
         depth: 0.05,
         until: 6.0,
     },
     Film {
-        name: "bingham",
-        density: 1000.0,
-        consistency: 2.0,
-        index: 1.0,
-        yield_stress: 10.0,
+        fluid: Fluid {
+            name: "bingham",
+            density: 1000.0,
+            consistency: 2.0,
+            index: 1.0,
+            yield_stress: 10.0,
+        },
         depth: 0.05,
         until: 6.0,
     },
     Film {
-        name: "power",
-        density: 1000.0,
-        consistency: 6.0,
-        index: 0.5,
-        yield_stress: 0.0,
+        fluid: Fluid {
+            name: "power",
+            density: 1000.0,
+            consistency: 6.0,
+            index: 0.5,
+            yield_stress: 0.0,
+        },
         depth: 0.05,
         until: 14.0,
     },
-    CLAY,
+    OF_CLAY,
 ];
 
-/// The clay of Monge-Gapper et al. (2024), Table 1.
-const CLAY: Film = Film {
-    name: "clay",
-    density: 1540.0,
-    consistency: 4.472,
-    index: 0.472,
-    yield_stress: 30.0,
+const OF_CLAY: Film = Film {
+    fluid: CLAY,
     depth: 0.06,
     until: 16.0,
 };
 
-/// Rows over the depth.
-fn rows(effort: Effort) -> [u32; 3] {
-    effort.pick([10, 20, 40], [4, 6, 8])
-}
-
 /// Clay that is 0.9 of its own plug deep.
 fn still() -> Film {
     Film {
-        name: "still",
-        depth: 0.9 * CLAY.layer().plug(),
-        ..CLAY
+        fluid: Fluid {
+            name: "still",
+            ..CLAY
+        },
+        depth: 0.9 * OF_CLAY.layer().plug(),
+        ..OF_CLAY
     }
 }
 
 impl Film {
     fn layer(&self) -> Layer {
         Layer {
-            consistency: self.consistency,
-            index: self.index,
-            yield_stress: self.yield_stress,
-            force: self.density * GRAVITY * SLOPE.to_radians().sin(),
+            fluid: self.fluid,
+            force: self.fluid.density * GRAVITY * SLOPE.to_radians().sin(),
             thickness: self.depth,
         }
     }
@@ -114,15 +103,13 @@ impl Film {
     fn member(&self, rows: u32) -> Result<Member, String> {
         let dp = self.depth / f64::from(rows);
         let length = 10.0 * dp;
-        let text = Template::new(TEMPLATE)?
+        let text = self
+            .fluid
+            .pour(Template::new(TEMPLATE)?)
             .with("domain.lower", point(0.0, -6.0 * dp))
             .with("domain.upper", point(length, 1.5 * self.depth))
             .with("domain.slope", SLOPE.to_radians())
             .with("numerics.spacing", dp)
-            .with("materials.fluid.density", self.density)
-            .with("materials.fluid.consistency", self.consistency)
-            .with("materials.fluid.flow_index", self.index)
-            .with("materials.fluid.yield_stress", self.yield_stress)
             .with(
                 "bodies.film.box",
                 rectangle([0.0, 0.0], [length, self.depth]),
@@ -130,12 +117,11 @@ impl Film {
             .with("walls.bed.polyline", points(&[[0.0, 0.0], [length, 0.0]]))
             .with("run.until", self.until)
             .text()?;
-        let times = (0..5).map(|k| self.until * (0.75 + 0.0625 * f64::from(k)));
         Ok(Member::new(
-            format!("{}_{rows}", self.name),
+            format!("{}_{rows}", self.fluid.name),
             text,
             &["energy.kinetic"],
-            times.collect(),
+            last_quarter(self.until),
         ))
     }
 
@@ -177,58 +163,26 @@ fn analyse(results: &Results) -> Result<Report, String> {
     let counts = rows(results.effort);
     for film in &FILMS {
         let found = counts.map(|n| {
-            let recording = results.finished(&format!("{}_{n}", film.name));
+            let recording = results.finished(&format!("{}_{n}", film.fluid.name));
             recording.and_then(|r| film.layer().errors(film.profile(r)))
         });
         for (n, errors) in counts.iter().zip(found) {
             let Some((l2, spread)) = errors else { continue };
-            let plug = film.yield_stress > 0.0;
             table.rows.push(vec![
-                film.name.to_owned(),
+                film.fluid.name.to_owned(),
                 n.to_string(),
                 number(film.layer().velocity(0.0)),
                 number(l2),
-                if plug { number(spread) } else { "-".to_owned() },
+                film.fluid.spread_cell(spread),
             ]);
         }
-        judge(film, counts, found, &mut report.metrics);
+        let judged = film.fluid.judge(counts, found, "asked at 20 rows");
+        report.metrics.extend(judged);
     }
     report.metrics.push(stands(results, counts[1]));
     report.tables.push(table);
     report.figures.push(figure(results, counts[1])?);
     Ok(report)
-}
-
-fn judge(film: &Film, counts: [u32; 3], found: [Option<(f64, f64)>; 3], metrics: &mut Vec<Metric>) {
-    let l2 = |k: usize| found[k].map(|f| f.0);
-    metrics.push(Metric::new(
-        format!("{}: L2 of velocity, {} rows", film.name, counts[1]),
-        l2(1),
-        Rule::AtMost(0.01),
-        "asked at 20 rows",
-    ));
-    metrics.push(Metric::new(
-        format!(
-            "{}: order from {} to {} rows",
-            film.name, counts[0], counts[2]
-        ),
-        l2(0).zip(l2(2)).map(|(coarse, fine)| {
-            (coarse / fine).ln() / (f64::from(counts[2]) / f64::from(counts[0])).ln()
-        }),
-        Rule::AtLeast(1.5),
-        "asked",
-    ));
-    if film.yield_stress > 0.0 {
-        metrics.push(Metric::new(
-            format!(
-                "{}: spread of the plug's speed, {} rows",
-                film.name, counts[1]
-            ),
-            found[1].map(|f| f.1),
-            Rule::AtMost(1e-3),
-            "a plug is rigid",
-        ));
-    }
 }
 
 /// The film that is too thin to flow.
@@ -256,14 +210,14 @@ fn figure(results: &Results, rows: u32) -> Result<Figure, String> {
             let y = f64::from(i) / 100.0;
             (layer.velocity(y * film.depth) / fastest, 1.0 - y)
         });
-        let name = format!("{}, exact", film.name);
+        let name = format!("{}, exact", film.fluid.name);
         curves.push(Curve::new(name, exact.collect(), Look::Thin, k));
-        if let Some(recording) = results.finished(&format!("{}_{rows}", film.name)) {
+        if let Some(recording) = results.finished(&format!("{}_{rows}", film.fluid.name)) {
             let dots = film.profile(recording).step_by(7);
             let dots = dots
                 .map(|(y, u)| (u / fastest, 1.0 - y / film.depth))
                 .collect();
-            let name = format!("{}, computed", film.name);
+            let name = format!("{}, computed", film.fluid.name);
             curves.push(Curve::new(name, dots, Look::Dots, k));
         }
     }

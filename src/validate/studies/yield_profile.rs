@@ -3,15 +3,106 @@
 //! Symbols: tau = tau_0 + K gamma^n, G force per volume, b thickness of the layer from the wall to where nothing shears (the
 //! middle of a channel, the surface of a film), y distance from there, y_c = tau_0/G.
 
-/// What flows, and what drives it.
+use crate::validate::report::number;
+use crate::validate::template::Template;
+use crate::validate::{Effort, Metric, Rule};
+
+/// A fluid of Herschel and Bulkley.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layer {
+pub(super) struct Fluid {
+    pub(super) name: &'static str,
+    /// [kg/m^3]
+    pub(super) density: f64,
     /// K [Pa s^n].
     pub(super) consistency: f64,
     /// n [1].
     pub(super) index: f64,
     /// tau_0 [Pa].
     pub(super) yield_stress: f64,
+}
+
+/// The clay of Monge-Gapper et al. (2024), Table 1.
+pub(super) const CLAY: Fluid = Fluid {
+    name: "clay",
+    density: 1540.0,
+    consistency: 4.472,
+    index: 0.472,
+    yield_stress: 30.0,
+};
+
+impl Fluid {
+    /// The template with this fluid as its `fluid`.
+    pub(super) fn pour(&self, template: Template) -> Template {
+        template
+            .with("materials.fluid.density", self.density)
+            .with("materials.fluid.consistency", self.consistency)
+            .with("materials.fluid.flow_index", self.index)
+            .with("materials.fluid.yield_stress", self.yield_stress)
+    }
+
+    /// A cell of a table: the plug's spread, of fluids that have one.
+    pub(super) fn spread_cell(&self, spread: f64) -> String {
+        if self.yield_stress > 0.0 {
+            number(spread)
+        } else {
+            "-".to_owned()
+        }
+    }
+
+    /// Judges errors (L2, spread of the plug) at three numbers of rows; `asked` says what of.
+    pub(super) fn judge(
+        &self,
+        counts: [u32; 3],
+        found: [Option<(f64, f64)>; 3],
+        asked: &str,
+    ) -> Vec<Metric> {
+        let name = self.name;
+        let [coarse, middle, fine] = counts;
+        let l2 = |k: usize| found[k].map(|f| f.0);
+        let mut metrics = vec![
+            Metric::new(
+                format!("{name}: L2 of velocity, {middle} rows"),
+                l2(1),
+                Rule::AtMost(0.01),
+                asked,
+            ),
+            Metric::new(
+                format!("{name}: order from {coarse} to {fine} rows"),
+                l2(0)
+                    .zip(l2(2))
+                    .map(|(a, b)| (a / b).ln() / (f64::from(fine) / f64::from(coarse)).ln()),
+                Rule::AtLeast(1.5),
+                "asked",
+            ),
+        ];
+        if self.yield_stress > 0.0 {
+            metrics.push(Metric::new(
+                format!("{name}: spread of the plug's speed, {middle} rows"),
+                found[1].map(|f| f.1),
+                Rule::AtMost(1e-3),
+                "a plug is rigid",
+            ));
+        }
+        metrics
+    }
+}
+
+/// Rows over the thickness of a layer.
+pub(super) fn rows(effort: Effort) -> [u32; 3] {
+    effort.pick([10, 20, 40], [4, 6, 8])
+}
+
+/// Five times in the last quarter of a run [s].
+pub(super) fn last_quarter(until: f64) -> Vec<f64> {
+    (0..5)
+        .map(|k| until * (0.75 + 0.0625 * f64::from(k)))
+        .collect()
+}
+
+/// What flows, and what drives it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layer {
+    pub(super) fluid: Fluid,
     /// G [Pa/m].
     pub(super) force: f64,
     /// b [m].
@@ -21,18 +112,18 @@ pub(super) struct Layer {
 impl Layer {
     /// y_c, half the plug of a channel or the plug of a film [m].
     pub(super) fn plug(&self) -> f64 {
-        self.yield_stress / self.force
+        self.fluid.yield_stress / self.force
     }
 
     /// Exact velocity at y >= 0 [m/s]: u_p = n/(n+1) (G/K)^(1/n) (b-y_c)^(1+1/n), u = u_p [1 - ((y-y_c)/(b-y_c))^(1+1/n)].
     pub(super) fn velocity(&self, y: f64) -> f64 {
-        let n = self.index;
+        let n = self.fluid.index;
         let sheared = self.thickness - self.plug();
         if sheared <= 0.0 {
             return 0.0;
         }
         let most = n / (n + 1.0)
-            * (self.force / self.consistency).powf(1.0 / n)
+            * (self.force / self.fluid.consistency).powf(1.0 / n)
             * sheared.powf(1.0 + 1.0 / n);
         let s = ((y - self.plug()) / sheared).max(0.0);
         most * (1.0 - s.powf(1.0 + 1.0 / n))
@@ -67,10 +158,8 @@ mod tests {
     fn the_profile_solves_its_equation() {
         // A clay film of 60 mm at 3 degrees: 0.1264 m/s.
         let film = Layer {
-            consistency: 4.472,
-            index: 0.472,
-            yield_stress: 30.0,
-            force: 1540.0 * 9.81 * 3f64.to_radians().sin(),
+            fluid: CLAY,
+            force: CLAY.density * 9.81 * 3f64.to_radians().sin(),
             thickness: 0.06,
         };
         assert!((film.velocity(0.0) - 0.1264).abs() < 1e-4);
@@ -78,7 +167,7 @@ mod tests {
         // tau = G y wherever it shears.
         for y in [0.04, 0.05, 0.058] {
             let rate = (film.velocity(y - 1e-6) - film.velocity(y + 1e-6)) / 2e-6;
-            let stress = film.yield_stress + film.consistency * rate.powf(film.index);
+            let stress = CLAY.yield_stress + CLAY.consistency * rate.powf(CLAY.index);
             assert!((stress / (film.force * y) - 1.0).abs() < 1e-5, "{y}");
         }
         assert_eq!(film.velocity(0.03), film.velocity(0.0));
