@@ -1,6 +1,7 @@
 //! `columns`: the six columns of [A] Table 3 in the plane, default scheme, five seeds each.
 
 pub(super) mod axisymmetric;
+mod convergence;
 mod figures;
 pub(super) mod paper_a;
 
@@ -37,8 +38,6 @@ pub(super) const SERIES: [&str; 4] = [
     "gauge.depth_centre.depth",
     "energy.kinetic",
 ];
-/// Fronts of the finer runs, taken at the coarse spacing's depth.
-const DEEP_FRONTS: [&str; 2] = ["deep_front_left", "deep_front_right"];
 /// Snapshots, over sqrt(H0/g).
 const PICTURES: [f64; 5] = [0.0, 1.0, 2.0, 3.0, 6.0];
 /// Stopping time over sqrt(H0/g): Lube's and Lajeunesse's.
@@ -128,30 +127,6 @@ impl Column {
     }
 }
 
-impl Column {
-    /// A finer run, whose fronts are also kept at the depth that they are taken at in the coarse one [m].
-    fn fine(&self, seed: u32, spacing: f64, until: f64, depth: f64) -> Result<Member, String> {
-        let mut template = self.template(seed, spacing, until)?;
-        for (gauge, side) in DEEP_FRONTS.into_iter().zip([-1.0, 1.0]) {
-            let key = |key: &str| format!("gauges.{gauge}.{key}");
-            template = template
-                .with(&key("kind"), "front")
-                .with(&key("origin"), point(0.0, 0.0))
-                .with(&key("direction"), point(side, 0.0))
-                .with(&key("least_depth"), depth);
-        }
-        let deep = DEEP_FRONTS.map(|gauge| format!("gauge.{gauge}.front"));
-        let series = [&SERIES[..], &[&deep[0], &deep[1]]].concat();
-        let name = self.name("fine_", seed);
-        Ok(Member::new(
-            name,
-            template.text()?,
-            &series,
-            self.pictures(seed),
-        ))
-    }
-}
-
 /// The template with a column of this half-width and height, and room to run out to `reach` on both sides [m].
 pub(super) fn scene(size: [f64; 2], spacing: f64, reach: f64) -> Result<Template, String> {
     let [half_width, height] = size;
@@ -180,12 +155,7 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
             members.push(column.member(column.name("", seed), seed, spacing, until)?);
         }
     }
-    let middle = COLUMNS[2];
-    let until = 2.0 * STOPPING * middle.fall();
-    let spacing = effort.pick(0.5, 1.5) * middle.spacing;
-    for seed in 1..=effort.pick(3, 1) {
-        members.push(middle.fine(seed, spacing, until, effort.pick(1.0, 2.5) * middle.spacing)?);
-    }
+    members.extend(convergence::members(effort)?);
     Ok(members)
 }
 
@@ -250,7 +220,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
     for column in &COLUMNS {
         report.metrics.extend(judge(results, column));
     }
-    report.metrics.extend(convergence(results));
+    report.metrics.extend(convergence::judge(results));
     report.tables.push(other_laws(results));
     let laws = COLUMNS.iter().map(|c| (c, c.name("", 1), c.planar_band()));
     let fronts = figures::fronts(results, &laws.collect::<Vec<_>>())?;
@@ -302,40 +272,6 @@ fn judge(results: &Results, column: &Column) -> Vec<Metric> {
             "a pile at rest does not creep",
         ),
     ]
-}
-
-fn convergence(results: &Results) -> [Metric; 2] {
-    let column = &COLUMNS[2];
-    let coarse = mean(&seeds(results, column, "").run_outs);
-    let change = |fine: Option<f64>| coarse.zip(fine).map(|(c, f)| (f / c - 1.0).abs());
-    let fine = mean(&seeds(results, column, "fine_").run_outs);
-    let deep = deep_run_outs(results, column);
-    [
-        Metric::new(
-            "a = 0.90: change of run-out from dp to dp/2, each front at a depth of its own spacing",
-            change(fine),
-            Rule::AtMost(0.03),
-            "resolution is no part of the result; three seeds at dp/2. Part of it is that a front of half the depth lies further out",
-        ),
-        Metric::new(
-            "a = 0.90: change of run-out from dp to dp/2, both fronts at a depth of dp",
-            change(mean(&deep)),
-            Rule::AtMost(0.03),
-            "the same quantity of both runs",
-        ),
-    ]
-}
-
-/// Run-outs of the finer runs by the fronts of the coarse depth.
-fn deep_run_outs(results: &Results, column: &Column) -> Vec<f64> {
-    let prefix = column.name("fine_", 0);
-    let prefix = prefix.trim_end_matches('0');
-    let found = results.starting(prefix).map(|(_, recording)| {
-        let ends = DEEP_FRONTS.map(|gauge| recording.last(&format!("gauge.{gauge}.front")));
-        let [left, right] = ends;
-        Some((0.5 * (left? + right?) - R0) / R0)
-    });
-    found.flatten().collect()
 }
 
 /// Heights and stopping times beside published laws: for other geometries or from secondary sources, so not judged.
