@@ -61,10 +61,6 @@ fn frame(name: &str, effort: Effort, speed: f64) -> Result<Member, String> {
     let reach = 5.0 * R0;
     let mut template = scene([R0, H0], spacing(effort), reach)?
         .with("domain.upper", point(reach + speed * SEEN_AT, 1.5 * H0))
-        .with(
-            "walls.floor.polyline",
-            crate::validate::template::points(&[[-reach, 0.0], [reach + speed * SEEN_AT, 0.0]]),
-        )
         // The same in both frames; left out, it would follow the speed of the body.
         .with("numerics.sound_speed", 10.0 * (GRAVITY * H0).sqrt())
         .with("bodies.column.velocity", point(speed, 0.0))
