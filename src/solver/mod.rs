@@ -188,7 +188,7 @@ impl<const D: usize> Solver<D> {
         let rubs = walls.groups.iter().any(|g| g.friction > 0.0);
         let has_fluids = materials.iter().any(Material::is_fluid);
         let has_effective_pressure = has_pores || (rubs && has_fluids);
-        let can_sleep = rest::can_sleep(&numerics, &walls);
+        let can_sleep = rest::can_sleep(&numerics, &gravity, &walls, &materials);
         for plate in &mut plates {
             plate.append(&mut walls);
         }

@@ -5,10 +5,12 @@
 //! A window is [`QUIET_STEPS`] of them in a row. Once forces on walls agree in two windows that follow each other, the
 //! particles stand still and time passes in one step, forces as they were: grains come to rest long before friction has
 //! settled what each wall carries (docs/theory.md, "Sleep").
-//! A gate told to move or an inflow told to run wakes the scene. Scenes with moving walls or without walls never sleep.
+//! A gate told to move or an inflow told to run wakes the scene. Scenes with moving walls or without walls never sleep, nor do
+//! those with a viscous material that would still have some way to go at such speeds.
 
 use crate::boundary::WallPoints;
-use crate::math::{Vector, dot};
+use crate::material::Material;
+use crate::math::{Vector, dot, norm};
 use crate::state::{Grains, RestState, State};
 
 use super::{Numerics, Solver, StepBound, StepInputs, SubStep};
@@ -29,9 +31,30 @@ const QUIET_SPEED: f64 = 3e-6;
 /// falls is faster before a scene sleeps.
 const FASTEST: f64 = 1e-4;
 
-/// Whether a scene can sleep at all: something fixed to rest on.
-pub(super) fn can_sleep<const D: usize>(numerics: &Numerics, walls: &WallPoints<D>) -> bool {
-    numerics.sleep && !walls.is_empty() && walls.velocity.iter().all(|v| *v == [0.0; D])
+/// Most viscosity of a material that sleeps, over rho sqrt(g H^3) [1], where c0 = 10 sqrt(g H).
+///
+/// A Bingham fluid's last way goes as 1/t: at the speed v it has H sqrt(eta v/(rho g H^2)) before it, 5e-5 H here.
+const MOST_VISCOUS: f64 = 1e-4;
+
+/// Whether a scene can sleep at all: something fixed to rest on, and no material that creeps.
+pub(super) fn can_sleep<const D: usize>(
+    numerics: &Numerics,
+    gravity: &Vector<D>,
+    walls: &WallPoints<D>,
+    materials: &[Material],
+) -> bool {
+    let inertia = (numerics.sound_speed / 10.0).powi(3) / norm(gravity);
+    numerics.sleep
+        && !walls.is_empty()
+        && walls.velocity.iter().all(|v| *v == [0.0; D])
+        && materials.iter().all(|m| stops_soon(m, inertia))
+}
+
+/// Whether what moves at the speed of a quiet scene is all but there; `inertia` is sqrt(g H^3) [m^2/s].
+fn stops_soon(material: &Material, inertia: f64) -> bool {
+    let viscous = &material.viscous;
+    let most = MOST_VISCOUS * material.rest_density() * inertia;
+    viscous.consistency == 0.0 || (viscous.is_linear() && viscous.consistency <= most)
 }
 
 impl<const D: usize> Solver<D> {

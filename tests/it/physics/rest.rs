@@ -1,6 +1,7 @@
 //! Sleep: what it changes, what wakes it, what it saves.
 
 use super::{Unit, case};
+use sandgate::scene;
 
 /// A small heap, with and without sleep.
 fn heap(sleep: &str) -> Unit {
@@ -52,6 +53,8 @@ fn forces_have_settled_before_sleep() {
         let [asleep, awake] = ["true", "false"].map(|sleep| {
             let mut unit = silo(&format!("sleep = {sleep}\n{start}"));
             unit.run_to(1.0);
+            let asleep = unit.component.particles().asleep.iter().all(|a| *a == 1);
+            assert_eq!(asleep, sleep == "true", "{start}");
             gate_force(&unit)
         });
         println!("{start}: gate force {asleep} N asleep, {awake} N awake");
@@ -101,4 +104,36 @@ fn a_gate_wakes_a_silo() {
     asleep.set("gate.main.opening", 1.0);
     asleep.run_to(1.4);
     assert_eq!(mass(&asleep).to_bits(), a.to_bits());
+}
+
+/// A block of a stiff fluid creeps on for hours, more slowly than sand that counts as quiet: it does not sleep.
+#[test]
+fn what_creeps_does_not_sleep() {
+    let text = r#"
+name = "tar"
+[domain]
+lower = [-0.1, -0.1]
+upper = [0.4, 0.3]
+[numerics]
+spacing = "10 mm"
+[materials.tar]
+law = "fluid"
+density = 1000
+consistency = 1e6
+[bodies.tar]
+material = "tar"
+box = { lower = [0, 0], upper = [0.1, 0.1] }
+[walls.tank]
+polyline = [[0, 0.2], [0, 0], [0.3, 0], [0.3, 0.2]]
+[run]
+step = 0.5
+until = 5
+"#;
+    let mut unit = Unit::new(&scene::parse("tar.toml", text).unwrap());
+    unit.run_to(5.0);
+    let speed = (2.0 * unit.get("energy.kinetic") / 10.0).sqrt();
+    println!("{speed:.1e} m/s");
+    // Quiet is 3e-6 c0.
+    assert!(speed > 1e-6 && speed < 3e-5, "{speed}");
+    assert_eq!(unit.component.particles().asleep[0], 0);
 }
