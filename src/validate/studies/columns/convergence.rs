@@ -1,10 +1,10 @@
-//! What half and a quarter of the spacing change of a run-out.
+//! Run-outs at half and at a quarter of the spacing.
 
-use crate::validate::statistics::mean;
+use crate::validate::statistics::{mean, spread};
 use crate::validate::template::point;
 use crate::validate::{Effort, Member, Metric, Results, Rule};
 
-use super::{COLUMNS, Column, R0, SERIES, STOPPING, seeds};
+use super::{COLUMNS, Column, R0, SERIES, seeds};
 
 /// Fronts of the finer runs, taken at the coarse spacing's depth.
 const DEEP_FRONTS: [&str; 2] = ["deep_front_left", "deep_front_right"];
@@ -39,68 +39,78 @@ impl Column {
     }
 }
 
-/// The column a = 0.90 at finer spacings.
+/// Seeds at half the spacing.
+pub(super) const FINE_SEEDS: [u32; 2] = [3, 1];
+/// Half the spacing over the spacing, in full and in quick studies.
+pub(super) const HALF: [f64; 2] = [0.5, 1.5];
+
+/// All columns at half the spacing; the lowest, fewest rows of all, and a = 0.90 also at a quarter.
 pub(super) fn members(effort: Effort) -> Result<Vec<Member>, String> {
-    let middle = COLUMNS[2];
     let mut members = Vec::new();
-    let until = 2.0 * STOPPING * middle.fall();
-    let [coarse, half, quarter] = effort
-        .pick([1.0, 0.5, 0.25], [2.5, 1.5, 1.2])
-        .map(|share| share * middle.spacing);
-    for seed in 1..=effort.pick(3, 1) {
-        members.push(middle.fine("fine_", (seed, half), until, coarse)?);
+    let [dp, half, quarter] =
+        [[1.0, 2.5], HALF, [0.25, 1.2]].map(|[full, quick]| effort.pick(full, quick));
+    for column in &COLUMNS {
+        let until = column.twice_stopping();
+        let depth = dp * column.spacing;
+        let run = |kind: &str, seed: u32, share: f64| {
+            column.fine(kind, (seed, share * column.spacing), until, depth)
+        };
+        for seed in 1..=effort.pick(FINE_SEEDS[0], FINE_SEEDS[1]) {
+            members.push(run("fine_", seed, half)?);
+        }
+        if has_finest(column) {
+            members.push(run("finest_", 1, quarter)?);
+        }
     }
-    members.push(middle.fine("finest_", (1, quarter), until, coarse)?);
     Ok(members)
 }
 
-/// Changes of the run-out of a = 0.90 with the spacing.
-pub(super) fn judge(results: &Results) -> [Metric; 4] {
-    let column = &COLUMNS[2];
+fn has_finest(column: &Column) -> bool {
+    [0.19, 0.90].contains(&column.aspect)
+}
+
+/// Run-outs at half the spacing, and what finer spacings change.
+pub(super) fn judge(results: &Results, column: &Column) -> Vec<Metric> {
+    let a = column.aspect;
     let own = |kind: &str| mean(&seeds(results, column, kind).run_outs);
     let deep = |kind: &str| mean(&deep_run_outs(results, column, kind));
     let change =
         |coarse: Option<f64>, fine: Option<f64>| coarse.zip(fine).map(|(c, f)| (f / c - 1.0).abs());
-    let metric = |spacings: &str, depths: &str, value, rule, why| {
-        let name = format!("a = 0.90: change of run-out from {spacings}, {depths}");
-        Metric::new(name, value, rule, why)
-    };
-    let (asked, further) = ("dp to dp/2", "dp/2 to dp/4");
-    let (by_own, by_deep) = (
-        "each front at a depth of its own spacing",
-        "both fronts at a depth of dp",
-    );
-    let one_seed = "asked of dp to dp/2; one seed at dp/4";
-    [
-        metric(
-            asked,
-            by_own,
-            change(own(""), own("fine_")),
+    let (low, high) = column.planar_band();
+    let mut metrics = vec![
+        Metric::new(
+            format!("a = {a:.2}, half the spacing: run-out"),
+            own("fine_"),
+            Rule::Between(low, high),
+            "the same law; three seeds",
+        ),
+        Metric::new(
+            format!("a = {a:.2}, half the spacing: spread of run-outs"),
+            spread(&seeds(results, column, "fine_").run_outs),
             Rule::AtMost(0.03),
-            "resolution is no part of the result; three seeds at dp/2. Part of it is that a front of half the depth lies further out",
+            "as above; three seeds",
         ),
-        metric(
-            asked,
-            by_deep,
-            change(own(""), deep("fine_")),
-            Rule::AtMost(0.03),
-            "the same quantity of both runs",
-        ),
-        metric(
-            further,
-            by_own,
-            change(own("fine_"), own("finest_")),
-            Rule::Report(None),
-            one_seed,
-        ),
-        metric(
-            further,
-            by_deep,
-            change(deep("fine_"), deep("finest_")),
-            Rule::Report(None),
-            one_seed,
-        ),
-    ]
+    ];
+    let mut changes =
+        |spacings: &str, [coarse, fine]: [[Option<f64>; 2]; 2], rule: Rule, why: &str| {
+            let depths = [
+                "each front at a depth of its own spacing",
+                "both fronts at a depth of dp",
+            ];
+            for (k, depth) in depths.into_iter().enumerate() {
+                let name = format!("a = {a:.2}: change of run-out from {spacings}, {depth}");
+                metrics.push(Metric::new(name, change(coarse[k], fine[k]), rule, why));
+            }
+        };
+    let fine = [own("fine_"), deep("fine_")];
+    let why = "resolution is no part of the result; by own spacings, part of it is that a front of half the depth lies further out";
+    changes("dp to dp/2", [[own(""); 2], fine], Rule::AtMost(0.03), why);
+    if has_finest(column) {
+        let finest = [own("finest_"), deep("finest_")];
+        let why = "asked of dp to dp/2; one seed at dp/4";
+        changes("dp/2 to dp/4", [fine, finest], Rule::Report(None), why);
+    }
+    metrics
 }
 
 /// Run-outs of the finer runs of a kind by the fronts of the coarse depth.
