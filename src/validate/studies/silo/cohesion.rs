@@ -31,9 +31,9 @@ const TIME: [f64; 2] = [4.0, 0.5];
 
 /// What limits the comparison.
 const NOTE: &str = "The published program takes the shear rate of a cell from its neighbours on both sides, over two cells. A layer \
-of yielding material that is one cell wide then carries twice its cohesion and friction, one of two cells one and a half times; \
-without cohesion the rate in mu(I) keeps such layers wider. Its Q falls with Co about twice as fast as ours. There, too, material at \
-no pressure has no cohesion, so strength under tension is no difference between the two.";
+of yielding material that is one cell wide then carries twice its cohesion and friction, one of two cells one and a half times. That \
+its Q falls with Co about twice as fast as ours fits this; without cohesion the rate in mu(I) may keep such layers wider. There, too, \
+material at no pressure has no cohesion, so strength under tension is no difference between the two.";
 
 /// A row of the table: mu_s, Co, Q.
 type Entry = [f64; 3];
