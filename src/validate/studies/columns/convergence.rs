@@ -39,7 +39,7 @@ impl Column {
     }
 }
 
-/// Seeds at half the spacing.
+/// Seeds at half the spacing, in full and in quick studies.
 pub(super) const FINE_SEEDS: [u32; 2] = [3, 1];
 /// Half the spacing over the spacing, in full and in quick studies.
 pub(super) const HALF: [f64; 2] = [0.5, 1.5];
