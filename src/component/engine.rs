@@ -6,7 +6,7 @@
 
 use super::{MassLedger, ParticleView, Statistics, Totals};
 use crate::gauge::Reading;
-use crate::solver::StepBound;
+use crate::solver::{StaysAwake, StepBound};
 
 /// An input over one communication step: `value + slope (t - t0)`, t0 being the start of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -162,6 +162,9 @@ pub(crate) trait Engine: Send {
 
     /// Particles as plain arrays, for logs and pictures.
     fn particles(&self) -> ParticleView;
+
+    /// Why the scene never sleeps.
+    fn stays_awake(&self) -> Option<StaysAwake>;
 
     /// Wall and gate particles where they are now, for pictures [m].
     fn wall_points(&self) -> Vec<[f64; 3]>;

@@ -38,6 +38,8 @@ pub use variables::{
 };
 pub use watch::{Intermediate, Wish};
 
+pub use crate::solver::StaysAwake;
+
 use crate::scene::Scene;
 use engine::{Engine, Inputs, Ramp};
 use lifecycle::Call;
@@ -383,6 +385,12 @@ impl Component {
     #[must_use]
     pub fn particles(&self) -> ParticleView {
         self.engine.particles()
+    }
+
+    /// Why the scene never sleeps, so that every step of it is computed; none if it may.
+    #[must_use]
+    pub fn stays_awake(&self) -> Option<StaysAwake> {
+        self.engine.stays_awake()
     }
 
     /// Wall and gate particles where they are now, for pictures [m].

@@ -11,7 +11,7 @@ use super::{Error, MassLedger, ParticleView, Statistics, Totals};
 use crate::gauge::{Reading, View};
 use crate::math::{Geometry, Vector, dot};
 use crate::scene::{self, Dimension, PressureQuantity, Scene};
-use crate::solver::{Solver, StepInputs, three};
+use crate::solver::{Solver, StaysAwake, StepInputs, three};
 use crate::state::{CellGrid, RestState, State};
 
 /// What is saved: the state, and what sections have counted.
@@ -445,6 +445,10 @@ impl<const D: usize> Engine for Simulation<D> {
             view.asleep.push(u8::from(self.state.rest.asleep));
         }
         view
+    }
+
+    fn stays_awake(&self) -> Option<StaysAwake> {
+        self.solver.stays_awake()
     }
 
     fn wall_points(&self) -> Vec<[f64; 3]> {

@@ -56,6 +56,7 @@ pub use paper_a::PaperA;
 pub use paper_b::PaperB;
 pub use passes::{Pass, Passes};
 pub use plan::{OnMove, Plan, StepBound, StepInputs, SubStep};
+pub use rest::StaysAwake;
 pub use validity::Validity;
 
 use std::sync::Arc;
@@ -105,7 +106,7 @@ pub struct Solver<const D: usize> {
     workers: Arc<Workers>,
     /// Instructions of the hot loops.
     arch: Arch,
-    can_sleep: bool,
+    stays_awake: Option<StaysAwake>,
     has_bulk_friction: bool,
     has_fluids: bool,
     /// Whether a material is saturated.
@@ -188,7 +189,7 @@ impl<const D: usize> Solver<D> {
         let rubs = walls.groups.iter().any(|g| g.friction > 0.0);
         let has_fluids = materials.iter().any(Material::is_fluid);
         let has_effective_pressure = has_pores || (rubs && has_fluids);
-        let can_sleep = rest::can_sleep(&numerics, &gravity, &walls, &materials);
+        let stays_awake = rest::stays_awake(&numerics, &gravity, &walls, &materials);
         for plate in &mut plates {
             plate.append(&mut walls);
         }
@@ -214,7 +215,7 @@ impl<const D: usize> Solver<D> {
             sinks,
             workers: Arc::new(Workers::new(threads)),
             arch: Arch::detect(),
-            can_sleep,
+            stays_awake,
             has_bulk_friction,
             has_fluids,
             has_pores,
@@ -334,7 +335,7 @@ impl<const D: usize> Solver<D> {
         state.steps += 1;
         state.iterations += u64::from(iterations);
         state.step_size = dt;
-        if self.can_sleep {
+        if self.stays_awake.is_none() {
             self.notice_rest(state, inputs, &impulse, dt);
             if state.rest.asleep {
                 // Velocities are 0 from here on, and what follows from them is what a restored state gives.

@@ -8,9 +8,15 @@ use crate::material::Material;
 use crate::math::{Vector, Workers};
 use crate::state::State;
 
-use super::{Scheme, Solver, YieldForm};
+use super::{Scheme, Solver, StaysAwake, YieldForm};
 
 impl<const D: usize> Solver<D> {
+    /// Why the scene never sleeps; none if it may.
+    #[must_use]
+    pub fn stays_awake(&self) -> Option<StaysAwake> {
+        self.stays_awake
+    }
+
     /// Pressure of each particle [Pa].
     #[must_use]
     pub fn pressure(&self) -> &[f64] {

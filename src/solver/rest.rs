@@ -13,7 +13,7 @@ use crate::material::Material;
 use crate::math::{Vector, dot, norm};
 use crate::state::{Grains, RestState, State};
 
-use super::{Numerics, Solver, StepBound, StepInputs, SubStep};
+use super::{Numerics, Scheme, Solver, StepBound, StepInputs, SubStep};
 
 /// Quiet steps of a window: a wave crosses 100 h meanwhile.
 const QUIET_STEPS: u32 = 200;
@@ -36,18 +36,38 @@ const FASTEST: f64 = 1e-4;
 /// A Bingham fluid's last way goes as 1/t: at the speed v it has H sqrt(eta v/(rho g H^2)) before it, 5e-5 H here.
 const MOST_VISCOUS: f64 = 1e-4;
 
+/// Why a scene never sleeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StaysAwake {
+    /// It is not to, or its scheme does not.
+    SwitchedOff,
+    /// Nothing to rest on.
+    NoWalls,
+    /// Walls that move.
+    MovingWalls,
+    /// A material that would still have some way to go at the speeds of a quiet scene: its number.
+    Creeping(usize),
+}
+
 /// Whether a scene can sleep at all: something fixed to rest on, and no material that creeps.
-pub(super) fn can_sleep<const D: usize>(
+pub(super) fn stays_awake<const D: usize>(
     numerics: &Numerics,
     gravity: &Vector<D>,
     walls: &WallPoints<D>,
     materials: &[Material],
-) -> bool {
+) -> Option<StaysAwake> {
+    if !numerics.sleep || numerics.scheme != Scheme::Implicit {
+        return Some(StaysAwake::SwitchedOff);
+    }
+    if walls.is_empty() {
+        return Some(StaysAwake::NoWalls);
+    }
+    if walls.velocity.iter().any(|v| *v != [0.0; D]) {
+        return Some(StaysAwake::MovingWalls);
+    }
     let inertia = (numerics.sound_speed / 10.0).powi(3) / norm(gravity);
-    numerics.sleep
-        && !walls.is_empty()
-        && walls.velocity.iter().all(|v| *v == [0.0; D])
-        && materials.iter().all(|m| stops_soon(m, inertia))
+    let creeps = materials.iter().position(|m| !stops_soon(m, inertia));
+    creeps.map(StaysAwake::Creeping)
 }
 
 /// Whether what moves at the speed of a quiet scene is all but there; `inertia` is sqrt(g H^3) [m^2/s].

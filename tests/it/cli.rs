@@ -529,6 +529,7 @@ fn info_tells_what_a_case_holds_costs_and_leaves_out() {
         "gate     main",
         "outflow  drain",
         "gauge    surface: depth at 4 places",
+        "sleep      once nothing has moved for a while, until an input changes",
         "left out   the third dimension",
         "inflows",
         "acoustic bound",

@@ -1,6 +1,6 @@
 //! What a scene holds and what it leaves out, for people.
 
-use crate::component::Component;
+use crate::component::{Component, StaysAwake};
 use crate::material::{Law, Material, MuI};
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
 use crate::shape::Shape;
@@ -38,6 +38,7 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
     for line in parts(scene) {
         text.push_str(&format!("  {line}\n"));
     }
+    text.push_str(&format!("sleep      {}\n", sleep(scene, component)));
     text.push_str(&format!("left out   {}\n", left_out(scene).join("; ")));
     text
 }
@@ -52,6 +53,23 @@ fn quality(scene: &Scene) -> String {
         n.courant,
         n.solver_tolerance,
     )
+}
+
+/// Whether the scene sleeps once nothing moves.
+fn sleep(scene: &Scene, component: &Component) -> String {
+    let never = match component.stays_awake() {
+        None => return "once nothing has moved for a while, until an input changes".to_owned(),
+        Some(StaysAwake::SwitchedOff) => {
+            "numerics.sleep is off, or the scheme has no sleep".to_owned()
+        }
+        Some(StaysAwake::NoWalls) => "there is no wall to rest on".to_owned(),
+        Some(StaysAwake::MovingWalls) => "walls move".to_owned(),
+        Some(StaysAwake::Creeping(k)) => format!(
+            "material {} is so viscous that it may creep on for long",
+            scene.materials[k].name
+        ),
+    };
+    format!("never: {never}")
 }
 
 /// The law of a material and what is added to it.

@@ -17,7 +17,7 @@ mod sums;
 mod walls;
 
 use crate::math::Vector;
-use crate::state::State;
+use crate::state::{Grains, State};
 
 use super::kinematics::Kinematics;
 use super::{OnMove, Solver, SolverError, StepBound, SubStep};
@@ -56,14 +56,15 @@ impl<const D: usize> Solver<D> {
         on_move: &mut OnMove<'_, D>,
     ) -> Result<SubStep, SolverError> {
         self.predict_paper_b(state, dt)?;
-        self.move_by(state, on_move, |velocity, _| {
-            std::array::from_fn(|k| dt * velocity[k])
-        })?;
         // u and rho are the predicted ones from here on, a and rho at n lie beside them.
-        let shifts = self.shift_of_prediction(choices, state, dt);
+        self.move_by(state, on_move, |grains, i| {
+            let (u, a) = (&grains.velocity[i], &grains.viscous_acceleration[i]);
+            std::array::from_fn(|k| dt * (u[k] - dt * a[k]))
+        })?;
+        let rest = self.rest_of_the_way(choices, state, dt);
         self.correct(state, dt)?;
         self.bounce(state);
-        self.move_by(state, on_move, |_, i| shifts[i])?;
+        self.move_by(state, on_move, |_, i| rest[i])?;
         self.evaluate(choices, state, dt, false);
         self.react_paper_b(state, 0.5 * dt);
         self.show(state);
@@ -118,7 +119,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// How far each particle is still to go (PB2) [m], from the predicted state, which this evaluates.
-    fn shift_of_prediction(
+    fn rest_of_the_way(
         &mut self,
         choices: &PaperB,
         state: &mut State<D>,
@@ -126,16 +127,20 @@ impl<const D: usize> Solver<D> {
     ) -> Vec<Vector<D>> {
         self.evaluate(choices, state, dt, self.numerics.shifting > 0.0);
         self.react_paper_b(state, 0.5 * dt);
-        let rows = self
-            .paper_b
-            .forces
-            .iter()
-            .zip(&state.grains.viscous_acceleration);
-        rows.map(|(forces, a)| {
-            // (x + x' + dt u')/2 - x' = dt (u' - u)/2.
-            std::array::from_fn(|k| 0.5 * dt * dt * a[k] + forces.shift[k])
-        })
-        .collect()
+        let grains = &state.grains;
+        let mut rest = vec![[0.0; D]; grains.len()];
+        self.workers
+            .blocks_read(&self.lists.blocks, &mut rest, |block, first, out| {
+                for (row, way) in out.iter_mut().enumerate() {
+                    let i = first + row;
+                    let a = &grains.viscous_acceleration[i];
+                    let shift = &self.paper_b.forces[i].shift;
+                    // (x + x' + dt u')/2 - x' = dt (u' - u)/2.
+                    *way = std::array::from_fn(|k| 0.5 * dt * dt * a[k] + shift[k]);
+                    self.keep_out(&grains.position[i], block.wall_row(row), way);
+                }
+            });
+        rest
     }
 
     /// u and rho at n + 1 (PB2).
@@ -177,14 +182,14 @@ impl<const D: usize> Solver<D> {
         &mut self,
         state: &mut State<D>,
         on_move: &mut OnMove<'_, D>,
-        way: impl Fn(&Vector<D>, usize) -> Vector<D>,
+        way: impl Fn(&Grains<D>, usize) -> Vector<D>,
     ) -> Result<(), SolverError> {
         let grains = &mut state.grains;
         self.before.clone_from(&grains.position);
-        for (i, x) in grains.position.iter_mut().enumerate() {
-            let step = way(&grains.velocity[i], i);
+        for i in 0..grains.len() {
+            let step = way(grains, i);
             for k in 0..D {
-                x[k] += step[k];
+                grains.position[i][k] += step[k];
             }
         }
         on_move(&self.before, grains);
