@@ -87,6 +87,33 @@ fn a_slope_turns_gravity_and_leaves_up_across_the_bed() {
 }
 
 #[test]
+fn a_size_of_gravity_is_not_negative() {
+    let text = case("silo_gate")
+        .source
+        .replace("[domain]", "[domain]\ngravity = -9.81");
+    let message = scene::parse("again", &text).unwrap_err().to_string();
+    for part in ["-9.81 m/s^2", "downwards", "write 9.81"] {
+        assert!(message.contains(part), "no {part:?} in: {message}");
+    }
+}
+
+#[test]
+fn an_inflow_takes_its_capacity_however_it_was_rounded() {
+    let chute = case("chute_inflow");
+    let most = chute.inflows[0].max_rate;
+    let with = |rate: f64| {
+        let schedule = format!(
+            "[[schedule]]\ninput = \"inflow.{}.rate\"\npoints = [[0, {rate:?}]]\n",
+            chute.inflows[0].name
+        );
+        scene::parse("again", &format!("{}\n{schedule}", chute.source))
+    };
+    let above = with(most * (1.0 + 1e-12)).unwrap();
+    assert_eq!(above.schedules.last().unwrap().points[0].1, most);
+    assert!(with(most * 1.001).is_err());
+}
+
+#[test]
 fn the_fingerprint_is_that_of_the_text() {
     let silo = case("silo_gate");
     let mut text = silo.source.clone();

@@ -5,6 +5,9 @@ use super::{Lift, cross_product, dot, length, minus};
 use crate::scene::raw::{Entry, RawInflow, RawOutflow};
 use crate::scene::types::{Inflow, NamedMaterial, Outflow, Point};
 
+/// How far above its bound a number may be by rounding, over the bound [1].
+const ROUNDING: f64 = 1e-9;
+
 impl Lift<'_> {
     /// One for each `[inflows.NAME]` that is right.
     pub(super) fn inflows(&mut self, materials: &[Option<NamedMaterial>]) -> Vec<Inflow> {
@@ -46,10 +49,9 @@ impl Lift<'_> {
             to,
             span,
             velocity: velocity?,
-            rate: raw.rate.as_ref()?.value.0,
+            rate: self.inflow_rate(raw, density * width * flux)?,
             max_rate: density * width * flux,
         };
-        self.check_inflow_rate(raw, &inflow);
         Some(inflow)
     }
 
@@ -86,20 +88,18 @@ impl Lift<'_> {
         None
     }
 
-    fn check_inflow_rate(&mut self, raw: &RawInflow, inflow: &Inflow) {
-        if let Some(rate) = &raw.rate
-            && rate.value.0 > inflow.max_rate
-        {
+    fn inflow_rate(&mut self, raw: &RawInflow, most: f64) -> Option<f64> {
+        let rate = raw.rate.as_ref()?;
+        let taken = up_to(most, rate.value.0);
+        if taken.is_none() {
             self.problems.report(
                 &rate.place,
                 format!("{} kg/s", rate.value.0),
-                format!(
-                    "at most {} kg/s: density at rest x face x velocity",
-                    inflow.max_rate
-                ),
+                format!("at most {most} kg/s: density at rest x face x velocity"),
                 "lower the rate, widen the face or raise the velocity",
             );
         }
+        taken
     }
 
     pub(super) fn outflows(&mut self) -> Vec<Outflow> {
@@ -131,4 +131,9 @@ impl Lift<'_> {
             upper,
         })
     }
+}
+
+/// `value`, if it is at most `most`; above by rounding counts as `most`, which people write as a product of their own.
+pub(super) fn up_to(most: f64, value: f64) -> Option<f64> {
+    (value <= most * (1.0 + ROUNDING)).then(|| value.min(most))
 }

@@ -89,6 +89,15 @@ impl Lift<'_> {
     fn gravity(&mut self, raw: &RawDomain) -> Option<Point> {
         let gravity = raw.gravity.as_ref()?;
         match &gravity.value {
+            Gravity::Size(size) if *size < 0.0 => {
+                self.problems.report(
+                    &gravity.place,
+                    format!("a size of {size} m/s^2"),
+                    "0 or more: a size acts downwards",
+                    format!("write {}, or a vector for another direction", -size),
+                );
+                None
+            }
             Gravity::Size(size) => {
                 let slope = raw.slope.as_ref().map_or(0.0, |s| s.value.0);
                 let (sin, cos) = slope.sin_cos();

@@ -1,6 +1,7 @@
 //! Run times, schedules and log settings.
 
 use super::Lift;
+use super::devices::up_to;
 use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint, SyncWord};
 use crate::scene::types::{Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule};
 use crate::units::{Quantity, quote};
@@ -145,7 +146,9 @@ impl Lift<'_> {
             }
         };
         let most = most.unwrap_or(f64::INFINITY);
-        if (0.0..=most).contains(&value) {
+        if let Some(value) = up_to(most, value)
+            && value >= 0.0
+        {
             return Some(value);
         }
         let unit = if quantity == Quantity::Ratio {
