@@ -200,7 +200,7 @@ impl Material {
     #[inline]
     #[must_use]
     pub fn is_newtonian(&self) -> bool {
-        self.is_fluid() && self.cohesion == 0.0 && self.viscous.is_linear()
+        self.flows() && self.viscous.is_linear()
     }
 
     /// Whether its pores are full of a fluid that carries part of the pressure.
@@ -208,6 +208,20 @@ impl Material {
     #[must_use]
     pub fn is_saturated(&self) -> bool {
         self.grains.pore_density > 0.0
+    }
+
+    /// Whether it cannot rest under uneven pressure: a fluid without yield stress.
+    #[inline]
+    #[must_use]
+    pub fn flows(&self) -> bool {
+        self.is_fluid() && self.cohesion == 0.0
+    }
+
+    /// Whether its particles' volumes are m/rho_0, so that density stands for pressure alone: fluids and saturated beds.
+    #[inline]
+    #[must_use]
+    pub fn keeps_volume(&self) -> bool {
+        self.is_fluid() || self.is_saturated()
     }
 
     /// Density of the material at rest without load [kg/m^3].

@@ -25,9 +25,10 @@ impl<const D: usize> Solver<D> {
         let (density, relaxed) = (&mut grains.density, &mut grains.relaxed_shear);
         self.workers.both(density, relaxed, |i, rho, relaxed| {
             let k = &self.kinematics[i];
-            // Exact for a constant divergence, and positive whatever the step.
-            let new = *rho * (-dt * k.divergence).exp();
             let material = &self.materials[phase[i] as usize];
+            let rate = k.divergence + self.packing_rate(material, k, (*rho, *relaxed), dt);
+            // Exact for a constant rate, and positive whatever the step.
+            let new = *rho * (-dt * rate).exp();
             let least = material.parted_density * material.rest_density();
             // NaN stays NaN, to be found below.
             *rho = if new < least { least } else { new };
@@ -57,7 +58,7 @@ impl<const D: usize> Solver<D> {
         let grains = &state.grains;
         for (i, v) in self.volume.iter_mut().enumerate() {
             let material = &self.materials[grains.phase[i] as usize];
-            if material.is_fluid() || material.is_saturated() {
+            if material.keeps_volume() {
                 *v = grains.mass[i] / (material.rest_density() * self.width);
             }
         }
@@ -115,7 +116,7 @@ impl<const D: usize> Solver<D> {
     /// Pressure [Pa] and what compression of the grains changes in the inertial number [1]: [A] eqs. 41, 43, 44; of fluids
     /// and saturated grains [B] eq. 3.
     #[inline]
-    fn load(&self, m: &Material, rho: f64, relaxed: f64) -> (f64, f64) {
+    pub(super) fn load(&self, m: &Material, rho: f64, relaxed: f64) -> (f64, f64) {
         let c = self.sound_speed_of(m);
         let rest = m.rest_density();
         let compressibility = 1.0 / (rest * c * c);

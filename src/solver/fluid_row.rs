@@ -26,9 +26,25 @@ pub(super) struct Row<const D: usize> {
     pub(super) fourfold: [f64; 2],
     /// Largest |v_ij|^2 [m^2/s^2].
     pub(super) speed2: f64,
+    /// sum_j g_ij, walls once [1/m].
+    pub(super) side: Vector<D>,
+    /// sum_j V_j |F|, walls once [1/m^2].
+    pub(super) nearness: f64,
 }
 
 impl<const D: usize> Row<D> {
+    /// Of a particle without neighbours.
+    pub(super) const NONE: Self = Self {
+        gradient: [[0.0; D]; D],
+        images: [[0.0; D]; D],
+        moment: [[0.0; D]; D],
+        pair_shear2: 0.0,
+        fourfold: [0.0; 2],
+        speed2: 0.0,
+        side: [0.0; D],
+        nearness: 0.0,
+    };
+
     /// Adds a neighbour at x_i - x_j = x of w = V_j |F|, at v_i - v_j with v.x = vx, to what the pair form's bias is made of.
     #[inline(always)]
     pub(super) fn add_pair(&mut self, x: &Vector<D>, vx: f64, w: f64, fluids: bool) {
@@ -141,6 +157,7 @@ impl<const D: usize> Solver<D> {
         }
         let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
         let (mut pair_shear2, mut speed2, mut fourfold) = (zero, zero, [zero; 2]);
+        let (mut side, mut nearness) = ([zero; D], zero);
         let Block { j, g, c, .. } = block;
         let groups = near.as_chunks::<LANES>().0;
         j.extend_from_slice(groups);
@@ -160,11 +177,14 @@ impl<const D: usize> Solver<D> {
             if RINGS {
                 vf = vf * ((ring + other.hoop) * to_section);
             }
+            // Groups are filled up with i itself.
+            nearness -= r2.where_greater(zero, vf);
             let inverse = one.over(r2.max(least) * vf);
             let mut weights = [Quad::default(); D];
             for b in 0..D {
                 let gb = vf * x[b];
                 weights[b] = gb.store();
+                side[b] += gb;
                 for a in 0..D {
                     gradient[a][b] -= v[a] * gb;
                     if a <= b {
@@ -185,12 +205,12 @@ impl<const D: usize> Solver<D> {
             c.push((pair_form * inverse).store());
         }
         let mut sums = Row {
-            gradient: [[0.0; D]; D],
-            images: [[0.0; D]; D],
-            moment: [[0.0; D]; D],
             pair_shear2: dissipation * pair_shear2.sum(),
             fourfold: fourfold.map(Four::sum),
             speed2: speed2.largest(),
+            side: side.map(Four::sum),
+            nearness: nearness.sum(),
+            ..Row::NONE
         };
         for a in 0..D {
             for b in 0..D {

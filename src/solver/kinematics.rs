@@ -25,6 +25,8 @@ pub(super) struct Kinematics {
     pub(super) pair_scale: f64,
     /// Largest speed relative to a neighbour or wall [m/s].
     pub(super) relative_speed: f64,
+    /// Share of room that its volume leaves empty [1].
+    pub(super) looseness: f64,
 }
 
 impl<const D: usize> Solver<D> {
@@ -134,6 +136,7 @@ impl<const D: usize> Solver<D> {
             correction: 1.0,
             pair_scale: 1.0,
             relative_speed: sums.speed2.sqrt(),
+            looseness: self.packing.looseness(sums),
         };
         if self.has_fluids {
             // Images change the shear rate and not div v, whose adjoint the pressure is.

@@ -23,6 +23,7 @@ mod motion;
 mod numerics;
 mod outputs;
 mod pack;
+mod packing;
 mod pair;
 mod paper_a;
 mod paper_b;
@@ -72,6 +73,7 @@ use constitutive::Response;
 use implicit::Viscous;
 use kinematics::Kinematics;
 use lists::Lists;
+use packing::Packing;
 use pressure::Prediction;
 use record::Record;
 use ring::Ring;
@@ -132,6 +134,7 @@ pub struct Solver<const D: usize> {
     pore: pore::Work,
     /// sum_j 2 V_j |F| of a full neighbourhood [1/m^2]; 0 in scenes without fluids and pores.
     lattice_sum: f64,
+    packing: Packing,
     /// 1 for fluids without yield stress, else 0; empty in scenes without.
     flows: Vec<f64>,
     /// Part of each particle's momentum that walls are given; empty in scenes without fluids.
@@ -235,6 +238,7 @@ impl<const D: usize> Solver<D> {
             } else {
                 0.0
             },
+            packing: Packing::new(&kernel, spacing),
             flows: Vec::new(),
             lean: Vec::new(),
             mirrors: Vec::new(),

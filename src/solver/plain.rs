@@ -63,14 +63,7 @@ impl<const D: usize> Solver<D> {
         let grains = &state.grains;
         let support2 = self.kernel.support() * self.kernel.support();
         let dissipation = D as f64 + 2.0;
-        let mut sums = Row {
-            gradient: [[0.0; D]; D],
-            images: [[0.0; D]; D],
-            moment: [[0.0; D]; D],
-            pair_shear2: 0.0,
-            fourfold: [0.0; 2],
-            speed2: 0.0,
-        };
+        let mut sums = Row::NONE;
         for &j in near {
             let n = j as usize;
             let x = self
@@ -88,6 +81,10 @@ impl<const D: usize> Solver<D> {
             let v = sub(&grains.velocity[i], &grains.velocity[n]);
             add_outer(&mut sums.gradient, -1.0, &v, &g);
             add_outer(&mut sums.moment, -1.0, &x, &g);
+            for (side, g) in sums.side.iter_mut().zip(&g) {
+                *side += g;
+            }
+            sums.nearness -= vf;
             sums.add_pair(&x, dot(&v, &x), -vf, self.has_fluids);
             sums.speed2 = sums.speed2.max(dot(&v, &v));
             pairs.push(Pair {

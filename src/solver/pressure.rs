@@ -92,14 +92,13 @@ impl<const D: usize> Solver<D> {
     /// Notes what has no yield stress: it cannot rest with another pressure than the hydrostatic one, so diffusion needs no
     /// gate there.
     fn note_what_flows(&mut self, state: &State<D>) {
-        let flows = |m: &Material| m.is_fluid() && m.cohesion == 0.0;
-        if !self.materials.iter().any(flows) {
+        if !self.materials.iter().any(Material::flows) {
             return;
         }
         let phase = &state.grains.phase;
         self.flows.resize(phase.len(), 0.0);
         self.workers.each(&mut self.flows, |i, f| {
-            *f = f64::from(u8::from(flows(&self.materials[phase[i] as usize])));
+            *f = f64::from(u8::from(self.materials[phase[i] as usize].flows()));
         });
     }
 

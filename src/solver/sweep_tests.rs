@@ -148,6 +148,7 @@ fn agrees<const D: usize>(material: Material, geometry: Geometry, count: usize) 
         close(plain.shear, fast.shear, 1e3);
         close(plain.correction, fast.correction, 1e2);
         close(plain.pair_scale, fast.pair_scale, 1e2);
+        close(plain.looseness, fast.looseness, 1e2);
     }
     solver.sweep_pressure(&state, 1e-4);
     let mut gradients: Vec<Tensor<D>> = vec![[[0.0; D]; D]; n];

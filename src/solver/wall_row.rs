@@ -146,6 +146,10 @@ impl<const D: usize> Solver<D> {
                 }
             }
             add_outer(&mut sums.moment, -1.0, &x, &g);
+            for (side, g) in sums.side.iter_mut().zip(&g) {
+                *side += g;
+            }
+            sums.nearness -= vf;
             let v = sub(vi, vw);
             let seen = face.seen(&v);
             sums.add_pair(&x, 2.0 * dot(&seen, &x), -vf, self.has_fluids);

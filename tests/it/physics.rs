@@ -8,6 +8,7 @@ mod collapse;
 mod conservation;
 mod incline;
 mod moving_walls;
+mod packing;
 mod paper_a;
 mod paper_b;
 mod phases;
