@@ -66,7 +66,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         sources,
         sinks,
     };
-    check_overlap(&plan, &state)?;
+    check_overlap(scene, &plan, &state)?;
     Ok((plan, state))
 }
 
@@ -488,7 +488,11 @@ fn source<const D: usize>(scene: &Scene, inflow: &Inflow) -> Source<D> {
 }
 
 /// No particle may start inside a wall or gate.
-fn check_overlap<const D: usize>(plan: &Plan<D>, state: &State<D>) -> Result<(), String> {
+fn check_overlap<const D: usize>(
+    scene: &Scene,
+    plan: &Plan<D>,
+    state: &State<D>,
+) -> Result<(), String> {
     let near = 0.3 * plan.numerics.spacing;
     let sides: [Option<(f64, f64)>; D] = std::array::from_fn(|k| {
         (plan.periodic.length[k] > 0.0).then(|| (plan.lower[k], plan.upper[k]))
@@ -499,22 +503,19 @@ fn check_overlap<const D: usize>(plan: &Plan<D>, state: &State<D>) -> Result<(),
         plate.append(&mut walls);
         plate.place(&mut walls, gate.opening, 0.0);
     }
-    let visible: Vec<Vector<D>> = walls
-        .position
-        .iter()
-        .zip(&walls.weight)
-        .filter(|(_, w)| **w > 0.5)
-        .map(|(x, _)| *x)
+    let shown: Vec<usize> = (0..walls.len())
+        .filter(|&w| walls.weight[w] > 0.5)
         .collect();
+    let visible: Vec<Vector<D>> = shown.iter().map(|&w| walls.position[w]).collect();
     let cells = crate::state::CellGrid::build(&visible, plan.numerics.spacing, &sides);
     for x in &state.grains.position {
         let mut hit = None;
-        cells.for_each_within(x, near, |_, w, _| hit = Some(w));
+        cells.for_each_within(x, near, |w, _, _| hit = Some(w));
         if let Some(w) = hit {
             return Err(format!(
-                "a particle starts at {:?} m, inside a wall or gate (wall point at {:?} m): move the body or the wall apart",
+                "a particle starts at {:?} m, inside {}: move the body or the wall apart",
                 &x[..],
-                &w[..]
+                wall_name(scene, walls.group[shown[w]]),
             ));
         }
         if dot(x, x).is_nan() {
@@ -522,4 +523,14 @@ fn check_overlap<const D: usize>(plan: &Plan<D>, state: &State<D>) -> Result<(),
         }
     }
     Ok(())
+}
+
+/// Of a group of wall points. Planar gates are checked before, so that a gate here stands in space.
+fn wall_name(scene: &Scene, group: u16) -> String {
+    let n = usize::from(group);
+    if let Some(wall) = scene.walls.get(n) {
+        return format!("wall {}", wall.name);
+    }
+    let gate = &scene.gates[n - scene.walls.len()].name;
+    format!("gate {gate}, whose material belongs on the side of span x (to - from)")
 }

@@ -513,3 +513,87 @@ fn broken_scenes_never_panic() {
     // Otherwise the mutations would be too tame to show anything.
     assert!(refused > 500, "only {refused} refused");
 }
+
+/// What is said about keys whose value would not make sense where it stands.
+#[test]
+fn what_makes_no_sense_together_is_refused_with_what_would() {
+    let scene = |numerics: &str, material: &str, gauge: &str| {
+        let text = format!(
+            r#"
+name = "tank"
+dimension = 2
+[domain]
+lower = [-0.1, -0.1]
+upper = [0.6, 0.6]
+[numerics]
+spacing = 0.0125
+{numerics}
+[materials.water]
+law = "fluid"
+density = 1000
+{material}
+[bodies.water]
+material = "water"
+box = {{ lower = [0, 0], upper = [0.5, 0.5] }}
+[walls.tank]
+polyline = [[0, 0.5], [0, 0], [0.5, 0], [0.5, 0.5]]
+[gauges.p]
+kind = "pressure"
+at = [0.1, 0.1]
+{gauge}
+[run]
+step = 0.02
+until = 1
+"#
+        );
+        scene::parse("tank.toml", &text).map_or_else(|e| e.to_string(), |_| String::new())
+    };
+    let viscous = "consistency = 1";
+    assert_eq!(scene("", viscous, ""), "");
+    let said = scene("sound_speed = 2", viscous, "");
+    assert!(said.contains("at least sqrt(g H), 2.215 m/s"), "{said}");
+    let said = scene("", "consistency = 1\nflow_index = 0", "");
+    assert!(said.contains("found:   0\n"), "{said}");
+    assert!(!said.contains('%'), "{said}");
+    let said = scene("", viscous, "quantity = \"effective\"");
+    assert!(said.contains("\"total\" or \"pore\""), "{said}");
+    let sand = "consistency = 1\n[materials.sand]\nlaw = \"mu_i\"\npreset = \"glass_beads\"\npore_fluid = \"oil\"";
+    let said = scene("", sand, "");
+    assert!(said.contains("law = \"fluid\": water\n"), "{said}");
+}
+
+#[test]
+fn a_body_inside_a_gate_is_told_on_which_side_material_belongs() {
+    // Third coordinates of what is low and high, where there are any.
+    let scene = |dimension: u8, low: &str, high: &str, gate: &str| {
+        format!(
+            r#"
+name = "gate"
+dimension = {dimension}
+[domain]
+lower = [-0.1, -0.1{low}]
+upper = [0.6, 0.6{high}]
+[numerics]
+spacing = 0.0125
+[materials.sand]
+law = "mu_i"
+preset = "glass_beads"
+[bodies.sand]
+material = "sand"
+box = {{ lower = [0, 0{low}], upper = [0.3, 0.1{high}] }}
+[gates.front]
+{gate}
+[run]
+step = 0.02
+until = 1
+"#
+        )
+    };
+    let planar = scene(2, "", "", "from = [0.3, 0.2]\nto = [0.3, 0]");
+    let said = scene::parse("gate.toml", &planar).unwrap_err().to_string();
+    assert!(said.contains("on the left of a gate's way"), "{said}");
+    let gate = "from = [0.3, 0, 0.1]\nto = [0.3, 0.2, 0.1]\nspan = [0, 0, -0.1]";
+    let space = scene::parse("gate.toml", &scene(3, ", 0", ", 0.1", gate)).unwrap();
+    let said = scene::build::<3>(&space).unwrap_err().to_string();
+    assert!(said.contains("inside gate front, whose"), "{said}");
+}

@@ -11,14 +11,17 @@ impl Lift<'_> {
         let spacing = self.spacing.unwrap_or(0.0);
         let mut hits = Vec::new();
         for (place, region) in &self.filled {
-            let boxes = self
-                .plates
+            let plates = self.plates.iter().map(|d| {
+                let remedy = "move the body: material belongs on the left of a gate's way from `from` to `to`";
+                (d, "starts inside the plate of", remedy)
+            });
+            let drains = self
+                .drains
                 .iter()
-                .map(|d| (d, "starts inside the plate of"));
-            let drains = self.drains.iter().map(|d| (d, "starts inside"));
-            for ((other, device), how) in boxes.chain(drains) {
+                .map(|d| (d, "starts inside", "move the body"));
+            for ((other, device), how, remedy) in plates.chain(drains) {
                 if region.overlaps(device, eps) {
-                    hits.push((place, format!("{how} {}", other.key), "move the body"));
+                    hits.push((place, format!("{how} {}", other.key), remedy));
                 }
             }
             for (other, solid) in &self.solids {

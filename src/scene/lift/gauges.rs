@@ -60,21 +60,34 @@ impl Lift<'_> {
         }
     }
 
-    /// Which pressure; that of pores only where a material has some or is a fluid.
+    /// Which pressure; that of pores only where a material has some or is a fluid, that of grains only where there are some.
     fn quantity(&mut self, raw: &RawPressure) -> Option<PressureQuantity> {
         let at = raw.quantity.as_ref()?;
+        let entries = self.raw.materials.iter().flat_map(|m| &m.value.0);
+        let materials: Vec<&RawMaterial> =
+            entries.filter_map(|entry| entry.value.as_ref()).collect();
+        let wet = |raw: &&RawMaterial| match raw {
+            RawMaterial::Fluid(_) => true,
+            RawMaterial::MuI(raw) => raw.pore_fluid.is_some(),
+            RawMaterial::BarkerGray(raw) => raw.pore_fluid.is_some(),
+            RawMaterial::ConstantFriction(raw) => raw.pore_fluid.is_some(),
+        };
+        let grains = |raw: &&RawMaterial| !matches!(raw, RawMaterial::Fluid(_));
         Some(match at.value {
             QuantityWord::Total => PressureQuantity::Total,
-            QuantityWord::Effective => PressureQuantity::Effective,
+            QuantityWord::Effective => {
+                if !materials.is_empty() && !materials.iter().any(grains) {
+                    self.problems.report(
+                        &at.place,
+                        "\"effective\" where all materials are fluids: no grain presses on grain",
+                        "\"total\" or \"pore\"",
+                        "choose another quantity",
+                    );
+                }
+                PressureQuantity::Effective
+            }
             QuantityWord::Pore => {
-                let materials = self.raw.materials.iter().flat_map(|m| &m.value.0);
-                let wet = |raw: &RawMaterial| match raw {
-                    RawMaterial::Fluid(_) => true,
-                    RawMaterial::MuI(raw) => raw.pore_fluid.is_some(),
-                    RawMaterial::BarkerGray(raw) => raw.pore_fluid.is_some(),
-                    RawMaterial::ConstantFriction(raw) => raw.pore_fluid.is_some(),
-                };
-                if !materials.filter_map(|e| e.value.as_ref()).any(wet) {
+                if !materials.iter().any(wet) {
                     self.problems.report(
                         &at.place,
                         "\"pore\" where no material is a fluid or saturated",

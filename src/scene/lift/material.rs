@@ -33,6 +33,10 @@ macro_rules! common_keys {
     };
 }
 
+const FLUID_NAME: &str = "the name of a material with law = \"fluid\"";
+const ADD_FLUID: &str =
+    "add for example [materials.water] with law = \"fluid\" and preset = \"water\"";
+
 impl Lift<'_> {
     /// One for each `[materials.NAME]`, in order; `None` where a problem was reported.
     pub(super) fn materials(&mut self) -> Vec<Option<NamedMaterial>> {
@@ -202,14 +206,24 @@ impl Lift<'_> {
         let Some(name) = name else {
             return Some(0.0);
         };
-        let raw = self.raw;
-        let n = self.index_of(
-            &name.value.0,
-            &name.place,
-            "materials",
-            raw.materials.as_ref(),
-        )?;
-        let entry = raw.materials.as_ref()?.value.0.get(n)?;
+        let entries = &self.raw.materials.as_ref()?.value.0;
+        let Some(entry) = entries.iter().find(|e| e.name == name.value.0) else {
+            let fluids = entries
+                .iter()
+                .filter(|e| matches!(e.value, Some(RawMaterial::Fluid(_))));
+            let known: Vec<_> = fluids.map(|e| e.name.as_str()).collect();
+            let (allowed, remedy) = if known.is_empty() {
+                (FLUID_NAME.to_owned(), ADD_FLUID)
+            } else {
+                (
+                    format!("{FLUID_NAME}: {}", known.join(", ")),
+                    "choose one of these",
+                )
+            };
+            let found = format!("unknown name {}", crate::units::quote(&name.value.0));
+            self.problems.report(&name.place, found, allowed, remedy);
+            return None;
+        };
         match &entry.value {
             // What is missing there is reported there.
             Some(RawMaterial::Fluid(fluid)) => {
@@ -220,8 +234,8 @@ impl Lift<'_> {
                 self.problems.report(
                     &name.place,
                     format!("{}, which is no fluid", crate::units::quote(&name.value.0)),
-                    "the name of a material with law = \"fluid\"",
-                    "add for example [materials.water] with law = \"fluid\" and preset = \"water\"",
+                    FLUID_NAME,
+                    ADD_FLUID,
                 );
                 None
             }

@@ -132,6 +132,19 @@ impl Lift<'_> {
                 );
                 return None;
             }
+            let wave = (self.gravity_size() * self.material_height().unwrap_or(0.0)).sqrt();
+            if given.value.0 < wave {
+                self.problems.report(
+                    &given.place,
+                    format!(
+                        "{} m/s, by which weight alone would more than double the density",
+                        given.value.0
+                    ),
+                    format!("at least sqrt(g H), {wave:.3} m/s here; ten times that is usual"),
+                    "raise sound_speed, or leave it out",
+                );
+                return None;
+            }
             return Some(given.value.0);
         }
         let domain = self.domain.as_ref()?;

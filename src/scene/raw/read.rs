@@ -240,13 +240,17 @@ impl KeySpec {
         if let Some(range) = self.range
             && let Some(number) = outside(range)
         {
-            let example = T::example();
+            // A ratio's unit is 1, and its example may lie outside this range.
+            let (unit, example) = match T::unit() {
+                "1" => ("", String::new()),
+                unit => (unit, T::example()),
+            };
             let remedy = if example.is_empty() {
                 "choose a value in this range".to_owned()
             } else {
                 format!("choose a value in this range; write for example {example}")
             };
-            let found = format!("{number} {}", T::unit());
+            let found = format!("{number} {unit}");
             problems.report(node.place(), found.trim(), range.text(T::unit()), remedy);
             return None;
         }
