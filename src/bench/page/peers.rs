@@ -4,7 +4,7 @@ use super::table;
 use crate::bench::SpeedRun;
 use crate::validate::report::number;
 
-/// What was measured of others, on the same kind of machine, one core, 2026: program, scene, particles, neighbours within
+/// What was measured of others, one core of an AMD Zen 3 server, 2026: program, scene, particles, neighbours within
 /// the support, million particle updates a second and core, million pairs.
 const PEERS: [[&str; 6]; 6] = [
     [
@@ -115,9 +115,9 @@ pub(super) fn peers(run: &SpeedRun) -> String {
     times.extend(COLUMN.iter().map(|row| owned(row)));
     format!(
         "## In the units of others\n\nThe column of [A]: half width 97.2 mm, height 87.5 mm, planar, sand (mu_s 0.589, mu_2 1.248, I0 2.65, 0.32 mm, \
-         2600 kg/m^3), c0 = 10 sqrt(g H), h/dp = 1.6, Courant number 0.5, one core. A particle update is one particle over one whole step, \
+         2600 kg/m^3), c0 = 10 sqrt(g H), h/dp = 1.6, Courant number 0.7, one core. A particle update is one particle over one whole step, \
          whatever sweeps and iterations that takes; pairs are updates times neighbours within the support, each pair counted from both sides. \
-         Others' figures were measured with their own programs as they are shipped, one core of the same kind of machine, in 2026; each has its own \
+         Others' figures were measured with their own programs as they are shipped, one core of an AMD Zen 3 server, in 2026; each has its own \
          sound speed, step and law (none has a local mu(I)), so that the second table compares what a user waits for and the first what \
          a step costs.\n\n{}\n\n{}",
         table(
