@@ -127,6 +127,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// From the sums of row i, at velocity v, to what the rheology needs.
+    #[inline(always)]
     pub(super) fn finish(&self, sums: &Row<D>, phase: u8, i: usize, v: &Vector<D>) -> Kinematics {
         let hoop = self.hoop_rate(i, v);
         let mut gradient = sums.gradient;

@@ -129,6 +129,10 @@ impl<const D: usize> Lists<D> {
                 touches[i as usize] = !block.wall_row(row).is_empty();
                 let mut own = root(&mut parent, i);
                 for &j in block.row(row).iter().filter(|&&j| j < i) {
+                    // Nearly all are in the piece already.
+                    if parent[j as usize] == own {
+                        continue;
+                    }
                     let other = root(&mut parent, j);
                     // The smaller index wins: the result does not depend on the order of unions.
                     let first = own.min(other);

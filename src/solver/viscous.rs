@@ -86,6 +86,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// 2 (1 - share) eta_i e of a velocity gradient.
+    #[inline(always)]
     pub(super) fn row_stress(&self, i: usize, v: &Vector<D>, gradient: &Tensor<D>) -> Tensor<D> {
         let mut gradient = *gradient;
         gradient[0][0] += self.axis_rate(i, v);

@@ -87,6 +87,8 @@ impl<const D: usize> FaceSums<D> {
 impl<const D: usize> Solver<D> {
     /// Adds to the sums of row i what the wall points `near` it give, and to `contacts` the faces with friction; `None` where
     /// there is no wall within the support.
+    // Within the sweep, so that the compiler may use the lanes' instructions here too.
+    #[inline(always)]
     pub(super) fn wall_row(
         &self,
         state: &State<D>,
@@ -211,6 +213,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Adds the sums of a face to those of the row; returns how flat all the row sees is.
+    #[inline(always)]
     fn add_face(
         &self,
         face: &FaceSums<D>,
