@@ -212,10 +212,8 @@ impl<const D: usize> Solver<D> {
                     }
                     if carried != [0.0; D] {
                         // Each point's part of L.
-                        let n = self.wall_normal(xi, w, state);
-                        let t = sub(&x, &scale(dot(&n, &x), &n));
-                        let share = -vf * dt * state.grains.mass[i] * dot(&t, &carried);
-                        part = add(&part, &scale(share, &t));
+                        let share = -vf * dt * state.grains.mass[i] * dot(&x, &carried);
+                        part = add(&part, &scale(share, &x));
                     }
                     if barrier > 0.0 {
                         let mut away = self.barrier.slope(&x, r, weight);

@@ -1,6 +1,6 @@
 //! Fluids at walls: what wall points, which take stress and pressure of the particle that sees them wherever they stand, lack of
-//! it. Without slip shear stress goes on into the wall as momentum says (docs/theory.md, W4); at all walls pressure goes on along
-//! them with its own slope (W7).
+//! it. Without slip shear stress goes on into the wall as momentum says (docs/theory.md, W4); at all walls pressure goes on with its
+//! own slope (W7).
 //!
 //! A wall point takes the stress of the particle that sees it. Across the face the shear traction t changes by
 //! dt/dn = rho (a - g)_t + grad_t p, which is what viscous forces leave of momentum along the wall: rho (a - a*)_t, a* the
@@ -15,16 +15,18 @@
 //!
 //! Where nothing slips along a wall only; fluids only: in sand friction would gain and pressure would not.
 //!
-//! Of a slope of pressure along a wall the first row's neighbours show it 0.65, and points with its own pressure nothing. Its
-//! weight was borne by as much: the row beside the wall of a tank at rest fell at a fourth of g, the water went round, and densities,
-//! which follow div v, kept what that did to them. With points at p_i + grad p . (x_w - x_i),
+//! Of a slope of pressure the first row's neighbours show it 0.65 along a wall and 0.5 across it, and points with its own pressure
+//! nothing. Along walls its weight was borne by as much: the row beside the wall of a tank at rest fell at a fourth of g, the water
+//! went round, and densities, which follow div v, kept what that did to them. Across a floor rows sank until walls made up for the rest
+//! by being nearer, 0.47 spacings instead of 0.5; that took as much more shear stress from them, which (W4) already had: the first row
+//! of a film of clay was at 0.68 of its speed. With points at p_i + grad p . (x_w - x_i),
 //!
-//!   (I - L) (a* - g) = a_p,   L = sum_walls |F_iw| V t t^T,   t = (I - n n^T) x_iw,                         (W7)
+//!   (I - L) (a* - g) = a_p,   L = sum_walls |F_iw| V x_iw x_iw^T,                                           (W7)
 //!
-//! a_p what the sums give. That is a smaller inertia and weight along the wall of a force that stays the adjoint of div v, so that
-//! sound is stable, and the wall gets m L (a* - g). Across the wall all is as before.
+//! a_p what the sums give. That is a smaller inertia and weight of a force that stays the adjoint of div v, so that sound is stable,
+//! and the wall gets m L (a* - g).
 //!
-//! Up to |g| counts, and less of it the faster a particle moves along the wall as pressure drives it: a wall that stands still must
+//! Up to |g| counts, and less of it the faster a particle moves the way that pressure drives it: a wall that stands still must
 //! drive nothing. Taken whole, two of 200 random scenes (mud that hits its tub) gained 2 and 10 % of their energy.
 
 use crate::math::{Tensor, Vector, apply, dot, inverse, norm, scale, sub, trace};
@@ -36,7 +38,7 @@ use super::pair::WallRow;
 /// Most of a particle's momentum that walls are given, and of a slope that they add [1]: corners and slits would ask for all of it.
 const MOST: f64 = 0.8;
 
-/// Speed along a wall, the way that pressure drives and over c0, from which on the wall adds nothing [1].
+/// Speed against a wall, the way that pressure drives and over c0, from which on the wall adds nothing [1].
 const DRIVEN: f64 = 0.01;
 
 impl<const D: usize> Solver<D> {
@@ -69,10 +71,10 @@ impl<const D: usize> Solver<D> {
         w: &mut WallRow<D>,
         velocity: &mut Vector<D>,
     ) {
-        if trace(&w.along) == 0.0 {
+        if trace(&w.moment) == 0.0 {
             return;
         }
-        let lacking = bounded(&w.along);
+        let lacking = bounded(&w.moment);
         let mut shown = lacking.map(|row| scale(-1.0, &row));
         for (a, row) in shown.iter_mut().enumerate() {
             row[a] += 1.0;
@@ -89,14 +91,14 @@ impl<const D: usize> Solver<D> {
         let lack = dot(&way, &apply(&lacking, &way));
         let heavy = (lack * self.gravity_norm / size).min(1.0);
         // Against the walls.
-        let along = dot(&way, &apply(&w.along, &way));
-        let sliding = sub(&apply(&w.along, before), &w.along_drive);
-        let driven = dot(&way, &sliding) / (along * DRIVEN * self.numerics.sound_speed);
+        let whole_lack = dot(&way, &apply(&w.moment, &way));
+        let moving = sub(&apply(&w.moment, before), &w.moment_drive);
+        let driven = dot(&way, &moving) / (whole_lack * DRIVEN * self.numerics.sound_speed);
         let share = heavy * (1.0 - driven).clamp(0.0, 1.0);
         for a in 0..D {
             velocity[a] += dt * share * added[a];
         }
-        let kept = trace(&lacking) / trace(&w.along);
+        let kept = trace(&lacking) / trace(&w.moment);
         w.carried = scale(kept * share, &whole);
     }
 

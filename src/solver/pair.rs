@@ -33,10 +33,10 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) lean: Tensor<D>,
     /// What images take from it.
     pub(super) lean_less: Tensor<D>,
-    /// L of (W7) before it is bounded: sum |F| V t t^T, t = (I - n n^T) x, of fluids; else 0.
-    pub(super) along: Tensor<D>,
-    /// sum |F| V t (t.v_w) of fluids, v_w the points' velocity; else 0.
-    pub(super) along_drive: Vector<D>,
+    /// L of (W7) before it is bounded: sum |F| V x x^T, the points' part of M, of fluids; else 0.
+    pub(super) moment: Tensor<D>,
+    /// sum |F| V x (x.v_w) of fluids, v_w the points' velocity; else 0.
+    pub(super) moment_drive: Vector<D>,
     /// a* - g of (W7) in this step, times what of L is kept [m/s^2].
     pub(super) carried: Vector<D>,
     /// Range of its images in the block.

@@ -33,10 +33,10 @@ struct FaceSums<const D: usize> {
     dragged: Vector<D>,
     /// sum |F| V (n.x)^2 of fluids without slip; else 0.
     lean: f64,
-    /// sum |F| V t t^T of fluids, t = (I - n n^T) x; else 0.
-    along: Tensor<D>,
-    /// sum |F| V t (t.v_w) of fluids; else 0.
-    along_drive: Vector<D>,
+    /// sum |F| V x x^T of fluids; else 0.
+    moment: Tensor<D>,
+    /// sum |F| V x (x.v_w) of fluids; else 0.
+    moment_drive: Vector<D>,
 }
 
 impl<const D: usize> FaceSums<D> {
@@ -50,8 +50,8 @@ impl<const D: usize> FaceSums<D> {
             pair: [[0.0; D]; D],
             dragged: [0.0; D],
             lean: 0.0,
-            along: [[0.0; D]; D],
-            along_drive: [0.0; D],
+            moment: [[0.0; D]; D],
+            moment_drive: [0.0; D],
         }
     }
 
@@ -136,15 +136,13 @@ impl<const D: usize> Solver<D> {
             let vw = &self.walls.velocity[wall as usize];
             face.add(&g, 2.0 * dissipation / (-vf * r2), vw);
             if is_fluid {
-                let depth = dot(&normal, &x);
-                let t = sub(&x, &scale(depth, &normal));
-                add_outer(&mut face.along, -vf, &t, &t);
-                let drive = -vf * dot(&t, &self.walls.velocity[wall as usize]);
+                add_outer(&mut face.moment, -vf, &x, &x);
+                let drive = -vf * dot(&x, vw);
                 for k in 0..D {
-                    face.along_drive[k] += drive * t[k];
+                    face.moment_drive[k] += drive * x[k];
                 }
                 if !face.free_slip {
-                    face.lean -= vf * depth.powi(2);
+                    face.lean -= vf * dot(&normal, &x).powi(2);
                 }
             }
             add_outer(&mut sums.moment, -1.0, &x, &g);
@@ -226,9 +224,9 @@ impl<const D: usize> Solver<D> {
         for a in 0..D {
             w.s[a] += face.s[a];
             w.cv[a] += face.dragged[a];
-            w.along_drive[a] += face.along_drive[a];
+            w.moment_drive[a] += face.moment_drive[a];
             for b in 0..D {
-                w.along[a][b] += face.along[a][b];
+                w.moment[a][b] += face.moment[a][b];
                 w.c[a][b] += face.pair[a][b];
                 let p = if face.free_slip {
                     n[a] * n[b]
@@ -291,8 +289,8 @@ impl<const D: usize> WallRow<D> {
             push: [0.0; D],
             lean: [[0.0; D]; D],
             lean_less: [[0.0; D]; D],
-            along: [[0.0; D]; D],
-            along_drive: [0.0; D],
+            moment: [[0.0; D]; D],
+            moment_drive: [0.0; D],
             carried: [0.0; D],
             images: (0, 0),
         }
