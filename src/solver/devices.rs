@@ -197,6 +197,9 @@ impl<const D: usize> Solver<D> {
                     };
                     let push = if flat { seen(g) } else { g };
                     let mut force = scale(-2.0 * self.normal_pressure()[i], &push);
+                    if let Some(uneven) = self.uneven_pressure.get(i) {
+                        force = add(&force, &scale(2.0, &crate::math::apply(uneven, &push)));
+                    }
                     force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau, &g))));
                     let pg = seen(g);
                     let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];

@@ -11,7 +11,12 @@ use super::Solver;
 use super::implicit::Viscous;
 
 /// Largest e of a row that may be left out [1]: what is left of its residual then is at most about this share.
-const MOST: f64 = 0.02;
+pub(super) const MOST: f64 = 0.02;
+
+/// e of a viscosity over dt eta/rho, from a lattice's sum_j 2 V_j |F| [1/m^2].
+pub(super) fn rate<const D: usize>(lattice_sum: f64) -> f64 {
+    (D as f64 + 2.0) / D as f64 * lattice_sum
+}
 
 impl<const D: usize> Solver<D> {
     /// Names in `work.explicit` the rows of Newtonian fluids that, like all their neighbours, have a small e.
@@ -22,8 +27,7 @@ impl<const D: usize> Solver<D> {
             return;
         }
         let grains = &state.grains;
-        // lattice_sum is of 2 V |F|.
-        let rate = (D as f64 + 2.0) / D as f64 * self.lattice_sum;
+        let rate = rate::<D>(self.lattice_sum);
         quick.resize(grains.len(), false);
         self.workers.each(quick, |i, quick| {
             let material = &self.materials[grains.phase[i] as usize];

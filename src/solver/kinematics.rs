@@ -75,6 +75,7 @@ impl<const D: usize> Solver<D> {
         self.lists.blocks = blocks;
         self.kinematics = kinematics;
         self.note_lean(state);
+        self.note_textures(state);
     }
 
     #[inline(always)]
@@ -120,7 +121,11 @@ impl<const D: usize> Solver<D> {
                 }
                 block.wall_rows.push(w);
             }
-            *o = self.finish(&sums, state.grains.phase[i], i, v);
+            let phase = state.grains.phase[i];
+            *o = self.finish(&sums, phase, i, v);
+            if FLUIDS && !self.slides.is_empty() {
+                block.textures.push(self.texture(&sums, o, phase));
+            }
         }
         block.near = near;
         block.contacts = contacts;

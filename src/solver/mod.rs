@@ -41,6 +41,7 @@ mod ring_tests;
 mod shift;
 #[cfg(test)]
 mod sweep_tests;
+mod texture;
 mod timestep;
 mod validity;
 mod viscous;
@@ -139,6 +140,12 @@ pub struct Solver<const D: usize> {
     flows: Vec<f64>,
     /// Part of each particle's momentum that walls are given; empty in scenes without fluids.
     lean: Vec<crate::math::Tensor<D>>,
+    /// For each material whether (F3) is for it; where it is for none, this and what follows stay empty.
+    slides: Vec<bool>,
+    /// T of each particle: how unevenly its neighbours lie [1].
+    texture: Vec<crate::math::Tensor<D>>,
+    /// p T of each particle [Pa].
+    uneven_pressure: Vec<crate::math::Tensor<D>>,
     /// The flat wall without slip that each particle of a fluid sees; empty in scenes without fluids and of rings.
     mirrors: Vec<mirror::Mirror<D>>,
     /// Smallest eigenvalue of each particle's moment matrix, 1 far from surfaces; empty in scenes that do not shift [1].
@@ -192,6 +199,13 @@ impl<const D: usize> Solver<D> {
         let rubs = walls.groups.iter().any(|g| g.friction > 0.0);
         let has_fluids = materials.iter().any(Material::is_fluid);
         let has_effective_pressure = has_pores || (rubs && has_fluids);
+        let lattice_sum = if has_pores || has_fluids {
+            pore::lattice_sum(&kernel, spacing)
+        } else {
+            0.0
+        };
+        let rate = explicit::rate::<D>(lattice_sum);
+        let slides = texture::who_slides(&numerics, geometry, &materials, rate);
         let stays_awake = rest::stays_awake(&numerics, &gravity, &walls, &materials);
         for plate in &mut plates {
             plate.append(&mut walls);
@@ -233,14 +247,13 @@ impl<const D: usize> Solver<D> {
             normal_pressure: Vec::new(),
             effective: Vec::new(),
             pore: pore::Work::default(),
-            lattice_sum: if has_pores || has_fluids {
-                pore::lattice_sum(&kernel, spacing)
-            } else {
-                0.0
-            },
+            lattice_sum,
             packing: Packing::new(&kernel, spacing),
             flows: Vec::new(),
             lean: Vec::new(),
+            slides,
+            texture: Vec::new(),
+            uneven_pressure: Vec::new(),
             mirrors: Vec::new(),
             openness: Vec::new(),
             shift: Vec::new(),

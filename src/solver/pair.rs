@@ -72,6 +72,8 @@ pub(super) struct Block<const D: usize> {
     pub(super) wall_rows: Vec<WallRow<D>>,
     /// Images of neighbours across flat walls without slip, row after row; empty in scenes without fluids.
     pub(super) images: Vec<Image<D>>,
+    /// T of (F3) of each row; empty in scenes without.
+    pub(super) textures: Vec<Tensor<D>>,
     /// Faces with friction that rows see, row after row; empty in scenes without.
     pub(super) contacts: Vec<Contact<D>>,
 }
@@ -148,6 +150,7 @@ impl<const D: usize> Block<D> {
         self.group_ends.clear();
         self.wall_rows.clear();
         self.images.clear();
+        self.textures.clear();
         self.contacts.clear();
     }
 

@@ -1,9 +1,10 @@
 //! Pressure and gravity: v* = v + dt (g + a_p), and the diffusion of density on pressure (docs/theory.md, E7, E8).
 //!
-//! Symbols: g_ij = V_j grad W_ij; a_i = -(1/rho_i) [sum_j (p_i + p_j) g_ij + sum_walls 2 p_i g_iw]; F = W'(r)/r.
+//! Symbols: g_ij = V_j grad W_ij; a_i = -(1/rho_i) [sum_j (p_i + p_j) g_ij + sum_walls 2 p_i g_iw]; F = W'(r)/r; p stands for the
+//! tensor P of (F3) where a fluid's rows slide.
 
 use crate::material::Material;
-use crate::math::{Four, Lanes, Quad, Tensor, Vector, in_lanes};
+use crate::math::{Four, Lanes, Quad, Tensor, Vector, apply, in_lanes};
 use crate::state::State;
 
 use super::Solver;
@@ -52,6 +53,7 @@ impl<const D: usize> Solver<D> {
         });
         self.prediction.resize(n, Prediction::default());
         self.note_what_flows(state);
+        self.find_uneven_pressure();
         let mut prediction = std::mem::take(&mut self.prediction);
         let mut blocks = std::mem::take(&mut self.lists.blocks);
         self.workers
@@ -70,6 +72,12 @@ impl<const D: usize> Solver<D> {
                     let eta = self.pair_viscosity[i];
                     for k in 0..D {
                         o.velocity[k] += a * w.s[k];
+                    }
+                    if let Some(uneven) = self.uneven_pressure.get(i) {
+                        let less = apply(uneven, &w.s);
+                        for k in 0..D {
+                            o.velocity[k] += 2.0 * dt * self.specific_volume(state, i) * less[k];
+                        }
                     }
                     if self.has_fluids {
                         self.carry_slope(&state.grains.velocity[i], dt, w, &mut o.velocity);
@@ -175,6 +183,26 @@ impl<const D: usize> Solver<D> {
             let push = splat(own_normal) + push;
             for k in 0..D {
                 force[k] -= push * g_ij[k];
+            }
+            if let Some(own) = self.uneven_pressure.get(i) {
+                // Symmetric, and without a trace.
+                let mut last = zero;
+                for a in 0..D {
+                    for b in a..D {
+                        if a + 1 == D {
+                            force[a] -= last * g_ij[a];
+                            continue;
+                        }
+                        let other = |m: usize| self.uneven_pressure[j[m] as usize][a][b];
+                        let both = splat(own[a][b]) + Four::gather(lanes, other);
+                        force[a] += both * g_ij[b];
+                        if a == b {
+                            last += both;
+                        } else {
+                            force[b] += both * g_ij[a];
+                        }
+                    }
+                }
             }
             let mean_rho = half * (splat(rho) + rho_j);
             if damp > 0.0 || own_damping > 0.0 {

@@ -1,0 +1,99 @@
+//! Fluids whose rows slide over each other: what their uneven places make pressure carry (docs/theory.md, F3).
+//!
+//! Where rows slide, neighbours lie nearer along the direction of compression, and M of (E2) is not the identity but has a shear part
+//! of -1e-4 to -1e-3. The pair form (p_i + p_j) makes a shear stress p dev M of that. In a film p is twenty times the shear stress:
+//! rows near a plug were held back by 1 % of it, which is a third of a yield stress fluid's rate there. So pressure acts as
+//!
+//!   P_i = p_i (I - T_i),   T_i = chi f(s) dev M_i,   f = max(0, 1 - s/0.3),   s = h |sum_j g_ij|, walls once             (F3)
+//!
+//! f leaves surfaces alone, where M lacks neighbours. Forces cancel pair by pair as before. div v stays what it is: with volumes held
+//! it is the rate of a sum over places, sum_j V_j W_ij, and comes back with them; with T : G taken out, the adjoint of (F3), volumes
+//! drift. So (F3) does work: where nothing holds a fluid still chi = min(1, T_d gamma), as in (E8), else 1.
+//!
+//! Not for sand, whose shear stress goes through the same sums, nor for rings, nor where viscosity does next to nothing in one step
+//! (water).
+
+use crate::material::Material;
+use crate::math::{Geometry, Tensor, norm, trace};
+use crate::state::State;
+
+use super::fluid_row::Row;
+use super::kinematics::Kinematics;
+use super::{Numerics, Scheme, Solver, explicit};
+
+/// s from which on neighbours lack on one side, and M says nothing of their order [1].
+const OPEN: f64 = 0.3;
+
+/// For each material whether (F3) is for it; empty where it is for none. `rate`: what e of a step is made of (`explicit`),
+/// sum_j 2 (D + 2) V_j |F|/D of a lattice [1/m^2].
+pub(super) fn who_slides(
+    numerics: &Numerics,
+    geometry: Geometry,
+    materials: &[Material],
+    rate: f64,
+) -> Vec<bool> {
+    let step =
+        numerics.courant * numerics.spacing * numerics.smoothing_ratio / numerics.sound_speed;
+    // Viscosity at 1/s.
+    let is_thin = |m: &Material| {
+        m.flows() && step * rate * m.viscous.consistency < explicit::MOST * m.rest_density()
+    };
+    let slides: Vec<bool> = materials
+        .iter()
+        .map(|m| m.is_fluid() && !is_thin(m))
+        .collect();
+    let any = numerics.scheme == Scheme::Implicit
+        && !geometry.is_axisymmetric()
+        && slides.contains(&true);
+    if any { slides } else { Vec::new() }
+}
+
+impl<const D: usize> Solver<D> {
+    /// T of a particle from the sums of its row.
+    pub(super) fn texture(&self, sums: &Row<D>, k: &Kinematics, phase: u8) -> Tensor<D> {
+        let side = self.kernel.h * norm(&sums.side);
+        if !self.slides[phase as usize] || side >= OPEN {
+            return [[0.0; D]; D];
+        }
+        let chi = if self.materials[phase as usize].flows() {
+            (self.numerics.diffusion_gate_time * k.shear).min(1.0)
+        } else {
+            1.0
+        };
+        let share = chi * (1.0 - side / OPEN);
+        let mean = trace(&sums.moment) / D as f64;
+        let mut t = sums.moment.map(|row| row.map(|m| share * m));
+        for (a, row) in t.iter_mut().enumerate() {
+            row[a] -= share * mean;
+        }
+        t
+    }
+
+    /// Gathers T of every particle after a sweep; nothing in scenes that do without.
+    pub(super) fn note_textures(&mut self, state: &State<D>) {
+        if self.slides.is_empty() {
+            return;
+        }
+        self.texture.resize(state.grains.len(), [[0.0; D]; D]);
+        let mut texture = std::mem::take(&mut self.texture);
+        self.workers
+            .blocks_read(&self.lists.blocks, &mut texture, |block, _, out| {
+                out.copy_from_slice(&block.textures);
+            });
+        self.texture = texture;
+    }
+
+    /// p T of every particle [Pa]: what (F3) takes from its pressure.
+    pub(super) fn find_uneven_pressure(&mut self) {
+        if self.slides.is_empty() {
+            return;
+        }
+        let mut uneven = std::mem::take(&mut self.uneven_pressure);
+        uneven.resize(self.texture.len(), [[0.0; D]; D]);
+        let pressure = self.normal_pressure();
+        self.workers.each(&mut uneven, |i, u| {
+            *u = self.texture[i].map(|row| row.map(|t| pressure[i] * t));
+        });
+        self.uneven_pressure = uneven;
+    }
+}
