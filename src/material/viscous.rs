@@ -94,6 +94,54 @@ impl Viscous {
         }
         q
     }
+
+    /// Mean shear rate of a cell through which stress changes evenly from `over - half` to `over + half` beyond the yield stress, and
+    /// its slope: of (t/K)^(1/n) where t > 0, half > 0 [Pa].
+    fn mean_rate(&self, over: f64, half: f64) -> (f64, f64) {
+        let m = 1.0 / self.flow_index;
+        let rate = |t: f64| (t.max(0.0) / self.consistency).powf(m);
+        let whole = |t: f64| t.max(0.0) * rate(t) / (m + 1.0);
+        let (top, bottom) = (over + half, over - half);
+        let width = 2.0 * half;
+        (
+            (whole(top) - whole(bottom)) / width,
+            (rate(top) - rate(bottom)) / width,
+        )
+    }
+
+    /// The q >= 0 of such a cell with t + r q = y, t its mean stress beyond the yield stress and q the mean rate, r > 0 [Pa s]; 0
+    /// where y <= -half: nothing of it yields [1/s]. Differences of rates lose digits where half is far less than y.
+    #[must_use]
+    pub fn mean_resolvent(&self, y: f64, r: f64, half: f64) -> f64 {
+        if y <= -half {
+            return 0.0;
+        }
+        let (k, m) = (self.consistency, 1.0 / self.flow_index);
+        if k <= 0.0 {
+            // Where any of it yields it is all the yield stress.
+            return (y + half) / r;
+        }
+        // Newton's steps come down from any t that is too large, since q is convex in t. Of the upper half at least rate(t) yields;
+        // where not all of the cell does, q is a power of what does.
+        let mut t = if y > 0.0 {
+            y.min(k * (2.0 * y / r).powf(self.flow_index))
+        } else {
+            y
+        };
+        let yielding = ((y + half) / r * 2.0 * half * (m + 1.0) * k.powf(m)).powf(1.0 / (m + 1.0));
+        if yielding <= 2.0 * half {
+            t = t.min(yielding - half);
+        }
+        for _ in 0..MOST_STEPS {
+            let (q, slope) = self.mean_rate(t, half);
+            let step = (t + r * q - y) / (1.0 + r * slope);
+            t -= step;
+            if step.abs() <= 1e-15 * (t + half) {
+                break;
+            }
+        }
+        self.mean_rate(t, half).0
+    }
 }
 
 /// Newton converges quadratically; 5 to 8 steps are usual.
@@ -120,6 +168,51 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_cells_resolvent_solves_its_equation_and_is_that_of_a_point_for_a_small_cell() {
+        for n in [0.2, 0.472, 1.0, 2.0] {
+            for k in [1e-3, 4.472, 1e4] {
+                let fluid = Viscous {
+                    consistency: k,
+                    flow_index: n,
+                };
+                for r in [1e-6, 0.1, 1e5] {
+                    for half in [1e-3, 0.5, 40.0] {
+                        for y in [-0.999 * half, -0.1 * half, 1e-3, 30.0, 1e5] {
+                            let q = fluid.mean_resolvent(y, r, half);
+                            // Its stress by halving.
+                            let (mut low, mut high) = (-half, y);
+                            for _ in 0..200 {
+                                let t = 0.5 * (low + high);
+                                let beyond = t + r * fluid.mean_rate(t, half).0 > y;
+                                *(if beyond { &mut high } else { &mut low }) = t;
+                            }
+                            let exact = fluid.mean_rate(low, half).0;
+                            let apart = (q - exact).abs();
+                            // What halving leaves of t moves q by its slope.
+                            let rounding = 1e-13 * (y.abs() + half) * fluid.mean_rate(high, half).1;
+                            assert!(
+                                apart <= 1e-6 * exact + rounding,
+                                "{n} {k} {r} {half} {y}: {q} {exact}"
+                            );
+                        }
+                    }
+                    let (point, cell) = (
+                        fluid.resolvent(30.0, r),
+                        fluid.mean_resolvent(30.0, r, 1e-6),
+                    );
+                    assert!(
+                        (cell / point - 1.0).abs() < 1e-6,
+                        "{n} {k} {r}: {cell} {point}"
+                    );
+                }
+            }
+        }
+        let plastic = Viscous::newtonian(0.0);
+        assert_eq!(plastic.mean_resolvent(3.0, 2.0, 1.0), 2.0);
+        assert_eq!(plastic.mean_resolvent(-1.0, 2.0, 1.0), 0.0);
     }
 
     #[test]

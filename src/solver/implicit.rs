@@ -72,6 +72,7 @@ impl<const D: usize> Solver<D> {
         dt: f64,
     ) -> Result<u32, SolverError> {
         self.find_friction(state);
+        self.find_wall_share(state);
         let mut work = std::mem::take(&mut self.viscous);
         work.resize(state.grains.len());
         let result = self.solve_with_yield(state, dt, &mut work);

@@ -48,6 +48,7 @@ mod viscous;
 mod wall_friction;
 mod wall_geometry;
 mod wall_row;
+mod wall_yield;
 
 pub use devices::{Sink, Source};
 pub use error::SolverError;
@@ -146,6 +147,8 @@ pub struct Solver<const D: usize> {
     texture: Vec<crate::math::Tensor<D>>,
     /// p T of each particle [Pa].
     uneven_pressure: Vec<crate::math::Tensor<D>>,
+    /// Stress that each particle's strain against walls without slip lacks (W8) [Pa]; empty in scenes without fluids that yield.
+    wall_share: Vec<f64>,
     /// The flat wall without slip that each particle of a fluid sees; empty in scenes without fluids and of rings.
     mirrors: Vec<mirror::Mirror<D>>,
     /// Smallest eigenvalue of each particle's moment matrix, 1 far from surfaces; empty in scenes that do not shift [1].
@@ -251,6 +254,7 @@ impl<const D: usize> Solver<D> {
             packing: Packing::new(&kernel, spacing),
             flows: Vec::new(),
             lean: Vec::new(),
+            wall_share: Vec::new(),
             slides,
             texture: Vec::new(),
             uneven_pressure: Vec::new(),

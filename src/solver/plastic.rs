@@ -95,8 +95,15 @@ impl<const D: usize> Solver<D> {
         let correction = self.kinematics[i].correction;
         let q = if material.is_fluid() {
             // Phi(R |q|): R tau(R q) + r q = |x|.
-            material.resolvent(size / correction, r / (correction * correction), p, 1.0)
-                / correction
+            let (x, r) = (size / correction, r / (correction * correction));
+            let half = self.wall_share.get(i).map_or(0.0, |share| *share);
+            let rate = if half > 0.0 {
+                let over = x - material.cohesion;
+                material.viscous.mean_resolvent(over, r, half)
+            } else {
+                material.resolvent(x, r, p, 1.0)
+            };
+            rate / correction
         } else {
             material.resolvent(size, r, p, correction)
         };

@@ -1,0 +1,58 @@
+//! Fluids with a yield stress beside walls without slip: where the wall yields them (docs/theory.md, W8).
+//!
+//! Near its yield a fluid slides over a wall in a layer thinner than a spacing, at the stress of the wall. Here the strain that a wall
+//! without slip makes is that of rows at half a spacing from it and more, 2 |S| u of a row at the speed u, and works on their stress;
+//! what stress is more at the wall, (W4) takes from them as momentum, m K (a - a*). So what slides over a floor lost the weight of 0.7
+//! of a row before it came to yield: a layer of nine rows stood up to 1.08 times the load that it bears. As a stress on that strain
+//! it is
+//!
+//!   D = rho |K (a - a*)| / (2 |S|),   S = sum_walls g_iw,                                                   (W8)
+//!
+//! 0.8 and 0.4 of what stress changes over a spacing in the first two rows. They yield as a cell does through which stress changes
+//! from tau - D to tau + D: at the mean of the law's rates. A layer as a whole then slides where the wall's stress is the yield stress
+//! and not before, and fast flow, where all of the cell yields, is what it was but for D^2.
+//!
+//! a - a* is that of the last step. Exact yield only.
+
+use crate::math::{apply, norm, trace};
+use crate::state::State;
+
+use super::{Solver, YieldForm};
+
+/// Most of the yield stress that D is [1].
+const MOST: f64 = 0.5;
+
+/// Less of it is none [1]: it would change the rate by its square.
+const LEAST: f64 = 1e-3;
+
+impl<const D: usize> Solver<D> {
+    /// D of every particle; nothing in scenes without fluids that yield.
+    pub(super) fn find_wall_share(&mut self, state: &State<D>) {
+        let yields = self.materials.iter().any(|m| m.is_fluid() && !m.flows());
+        if !yields || self.numerics.yield_form == YieldForm::Capped {
+            return;
+        }
+        let grains = &state.grains;
+        let mut shares = std::mem::take(&mut self.wall_share);
+        shares.clear();
+        shares.resize(grains.len(), 0.0);
+        self.workers
+            .blocks_read(&self.lists.blocks, &mut shares, |block, first, out| {
+                for w in &block.wall_rows {
+                    let i = first + w.row as usize;
+                    let material = &self.materials[grains.phase[i] as usize];
+                    let side = norm(&w.s);
+                    if !material.is_fluid() || trace(&w.lean) == 0.0 || side == 0.0 {
+                        continue;
+                    }
+                    let handed = norm(&apply(&self.lean[i], &grains.viscous_acceleration[i]));
+                    let share = handed / (2.0 * side * self.specific_volume(state, i));
+                    let share = share.min(MOST * material.cohesion);
+                    if share > LEAST * material.cohesion {
+                        out[w.row as usize] = share;
+                    }
+                }
+            });
+        self.wall_share = shares;
+    }
+}
