@@ -6,6 +6,7 @@
 mod axisymmetric;
 mod collapse;
 mod conservation;
+mod films;
 mod incline;
 mod moving_walls;
 mod packing;
