@@ -16,7 +16,7 @@ pub(super) const STUDY: Study = Study {
     about: "A film of a fluid of Herschel and Bulkley, tau = tau_0 + K gamma^n, on a slope of 3 degrees without slip, periodic along \
 it (10 particles). Down to y_c = tau_0/(rho g sin 3 deg) below the surface it moves as a plug; the profile is that of half a channel \
 (study `channel`) driven by G = rho g sin 3 deg. Starts at rest; velocity of all particles over the last quarter of the run, depth \
-taken from the exact surface. L2: root of the mean square of u - exact over that of the exact u.\n\n\
+taken from the exact surface. L2: root of the mean square of u - exact over that of the exact u, for single particles; orders also for the means of rows.\n\n\
 A film of clay thinner than its plug stands still: 0.9 of it is judged, with sleep off.",
     members,
     analyse,
@@ -153,7 +153,8 @@ fn analyse(results: &Results) -> Result<Report, String> {
             "fluid",
             "rows",
             "exact surface speed [m/s]",
-            "L2",
+            "L2, particles",
+            "L2, means of rows",
             "plug spread",
         ]
         .map(str::to_owned)
@@ -164,16 +165,17 @@ fn analyse(results: &Results) -> Result<Report, String> {
     for film in &FILMS {
         let found = counts.map(|n| {
             let recording = results.finished(&format!("{}_{n}", film.fluid.name));
-            recording.and_then(|r| film.layer().errors(film.profile(r)))
+            recording.and_then(|r| film.layer().errors(film.profile(r), n))
         });
         for (n, errors) in counts.iter().zip(found) {
-            let Some((l2, spread)) = errors else { continue };
+            let Some(errors) = errors else { continue };
             table.rows.push(vec![
                 film.fluid.name.to_owned(),
                 n.to_string(),
                 number(film.layer().velocity(0.0)),
-                number(l2),
-                film.fluid.spread_cell(spread),
+                number(errors.particles),
+                number(errors.profile),
+                film.fluid.spread_cell(errors.spread),
             ]);
         }
         let judged = film.fluid.judge(counts, found, "asked at 20 rows");

@@ -49,16 +49,20 @@ impl Fluid {
         }
     }
 
-    /// Judges errors (L2, spread of the plug) at three numbers of rows; `asked` says what of.
+    /// Judges errors at three numbers of rows; `asked` says what of.
     pub(super) fn judge(
         &self,
         counts: [u32; 3],
-        found: [Option<(f64, f64)>; 3],
+        found: [Option<Errors>; 3],
         asked: &str,
     ) -> Vec<Metric> {
         let name = self.name;
         let [coarse, middle, fine] = counts;
-        let l2 = |k: usize| found[k].map(|f| f.0);
+        let l2 = |k: usize| found[k].map(|f: Errors| f.particles);
+        let profile = |k: usize| found[k].map(|f: Errors| f.profile);
+        let order = |(coarse_error, fine_error): (f64, f64)| {
+            (coarse_error / fine_error).ln() / (f64::from(fine) / f64::from(coarse)).ln()
+        };
         let mut metrics = vec![
             Metric::new(
                 format!("{name}: L2 of velocity, {middle} rows"),
@@ -68,17 +72,21 @@ impl Fluid {
             ),
             Metric::new(
                 format!("{name}: order from {coarse} to {fine} rows"),
-                l2(0)
-                    .zip(l2(2))
-                    .map(|(a, b)| (a / b).ln() / (f64::from(fine) / f64::from(coarse)).ln()),
+                l2(0).zip(l2(2)).map(order),
                 Rule::AtLeast(1.5),
                 "asked",
+            ),
+            Metric::new(
+                format!("{name}: order of the profile from {coarse} to {fine} rows"),
+                profile(0).zip(profile(2)).map(order),
+                Rule::Report(None),
+                "means of rows: particles stand up to a tenth of a spacing off their row and move with it",
             ),
         ];
         if self.yield_stress > 0.0 {
             metrics.push(Metric::new(
                 format!("{name}: spread of the plug's speed, {middle} rows"),
-                found[1].map(|f| f.1),
+                found[1].map(|f| f.spread),
                 Rule::AtMost(1e-3),
                 "a plug is rigid",
             ));
@@ -97,6 +105,17 @@ pub(super) fn last_quarter(until: f64) -> Vec<f64> {
     (0..5)
         .map(|k| until * (0.75 + 0.0625 * f64::from(k)))
         .collect()
+}
+
+/// How far a computed layer is from its exact profile.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Errors {
+    /// Root of the mean square of u - exact over that of the exact u, of single particles [1].
+    pub(super) particles: f64,
+    /// The same of the means of rows [1].
+    pub(super) profile: f64,
+    /// Spread of the plug's velocity over its exact one; 0 without a plug [1].
+    pub(super) spread: f64,
 }
 
 /// What flows, and what drives it.
@@ -129,15 +148,23 @@ impl Layer {
         most * (1.0 - s.powf(1.0 + 1.0 / n))
     }
 
-    /// Root of the mean square of u - exact over that of the exact u, and the spread of the plug's velocity over its exact one,
-    /// 0 without a plug; of distances y >= 0 and velocities of particles. `None` without particles that should move.
-    pub(super) fn errors(&self, found: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
+    /// Of distances y >= 0 and velocities of particles, and the number of rows over the thickness. `None` without particles that should
+    /// move.
+    pub(super) fn errors(
+        &self,
+        found: impl Iterator<Item = (f64, f64)>,
+        rows: u32,
+    ) -> Option<Errors> {
         let (mut error, mut size, mut plug) = (0.0, 0.0, Vec::new());
         let fastest = self.velocity(0.0);
+        let mut each_row = vec![(0.0, 0.0, 0.0); rows as usize];
         for (y, u) in found {
             let exact = self.velocity(y);
             error += (u - exact).powi(2);
             size += exact * exact;
+            let row = ((y / self.thickness * f64::from(rows)) as usize).min(rows as usize - 1);
+            let (sum, exact_sum, count) = &mut each_row[row];
+            (*sum, *exact_sum, *count) = (*sum + u, *exact_sum + exact, *count + 1.0);
             // Not within two spacings of the yield surface, where the kernel sees sheared fluid.
             if y < 0.8 * self.plug() {
                 plug.push(u / fastest);
@@ -146,7 +173,15 @@ impl Layer {
         let mean = crate::validate::statistics::mean(&plug).unwrap_or(0.0);
         let squares: f64 = plug.iter().map(|u| (u - mean).powi(2)).sum();
         let spread = (squares / plug.len().max(1) as f64).sqrt();
-        (size > 0.0).then(|| ((error / size).sqrt(), spread))
+        let full = each_row.iter().filter(|row| row.2 > 0.0);
+        let (row_error, row_size) = full.fold((0.0, 0.0), |(e, s), (u, exact, n)| {
+            (e + ((u - exact) / n).powi(2), s + (exact / n).powi(2))
+        });
+        (size > 0.0).then(|| Errors {
+            particles: (error / size).sqrt(),
+            profile: (row_error / row_size).sqrt(),
+            spread,
+        })
     }
 }
 
