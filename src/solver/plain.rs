@@ -115,6 +115,14 @@ impl<const D: usize> Solver<D> {
                 for k in 0..D {
                     force[k] -= (self.pressure[i] + self.pressure[j]) * pair.g[k];
                 }
+                if let Some(own) = self.uneven_pressure.get(i) {
+                    let other = &self.uneven_pressure[j];
+                    for a in 0..D {
+                        for b in 0..D {
+                            force[a] += (own[a][b] + other[a][b]) * pair.g[b];
+                        }
+                    }
+                }
                 o.diffusion += strength * self.plain_diffusion(state, i, pair);
                 let both = self.pair_viscosity[i] + self.pair_viscosity[j];
                 if both > 0.0 {
