@@ -2,7 +2,7 @@
 
 use crate::validate::chart::{Chart, Curve, Look};
 use crate::validate::report::number;
-use crate::validate::statistics::rms;
+use crate::validate::statistics::{mean, rms};
 use crate::validate::template::Template;
 use crate::validate::{
     Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study, Table,
@@ -29,6 +29,8 @@ const SURFACE: &str = "gauge.surface.depth";
 const FRONT: &str = "gauge.front.front";
 /// Places of the profile: the first and their distance [m].
 const FEET: (f64, f64) = (0.01, 0.01);
+/// Places whose mean leaves the surface's roughness out: 70 mm.
+const WIDE: usize = 7;
 const PAPER_B: &str = "paper_b";
 
 /// Particles over the height, each twice those before.
@@ -59,13 +61,15 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
     Ok(members)
 }
 
-/// Root of the mean square of the difference of two profiles at a time, over the initial height.
-fn apart(one: &Recording, other: &Recording, time: f64) -> Option<f64> {
-    let (a, b) = (
-        one.values_at(SURFACE, time)?,
-        other.values_at(SURFACE, time)?,
-    );
-    let errors: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b) / HEIGHT).collect();
+/// Root of the mean square of the difference of two profiles at a time, each place the mean of so many beside each other, over the
+/// initial height.
+fn apart(one: &Recording, other: &Recording, time: f64, places: usize) -> Option<f64> {
+    let means = |of: &Recording| -> Option<Vec<f64>> {
+        let windows = of.values_at(SURFACE, time)?.windows(places);
+        Some(windows.map(|w| mean(w).unwrap_or(f64::NAN)).collect())
+    };
+    let (a, b) = (means(one)?, means(other)?);
+    let errors: Vec<f64> = a.iter().zip(&b).map(|(a, b)| (a - b) / HEIGHT).collect();
     rms(&errors)
 }
 
@@ -92,8 +96,11 @@ fn analyse(results: &Results) -> Result<Report, String> {
     for time in TIMES {
         let steps: Vec<Option<f64>> = found
             .windows(2)
-            .map(|pair| apart(pair[0]?, pair[1]?, time))
+            .map(|pair| apart(pair[0]?, pair[1]?, time, 1))
             .collect();
+        let smooth = found
+            .windows(2)
+            .map(|pair| apart(pair[0]?, pair[1]?, time, WIDE));
         for (pair, step) in rows.windows(2).zip(&steps) {
             let rule = if pair[1] == rows[3] {
                 Rule::AtMost(0.01)
@@ -105,6 +112,17 @@ fn analyse(results: &Results) -> Result<Report, String> {
                 *step,
                 rule,
                 "converged: the finest one's own error is of this order",
+            ));
+        }
+        for (pair, step) in rows.windows(2).zip(smooth) {
+            report.metrics.push(Metric::new(
+                format!(
+                    "{time} s: H/{} against H/{}, means over 70 mm",
+                    pair[0], pair[1]
+                ),
+                step,
+                Rule::Report(None),
+                "without the surface's roughness, which grows as the spacing falls",
             ));
         }
         let order = || Some((steps[0]? / steps[2]?).log2() / 2.0);
