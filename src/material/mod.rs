@@ -27,6 +27,8 @@ pub use mu_i::{MuI, SAND_LAYER_FACTOR};
 pub use viscous::Viscous;
 pub use well_posed::{ill_posedness, neutral_inertial_numbers};
 
+use std::f64::consts::PI;
+
 /// A friction law mu(I): shear stress over pressure against the inertial number I >= 0. Dimensionless.
 pub trait Friction {
     /// mu(I) [1].
@@ -114,8 +116,7 @@ pub struct Material {
     pub grains: Grains,
     /// Friction law.
     pub law: Law,
-    /// Shear strength without pressure >= 0 [Pa]. It is no tensile strength: pressure never falls below 0, so material
-    /// that is pulled parts, and parted material carries nothing.
+    /// Shear strength without pressure >= 0 [Pa]; of grains it is no tensile strength: see [`Material::least_pressure`].
     pub cohesion: f64,
     /// Viscous stress beside them. With a flow index that is not 1 the law is one without rate dependence of its own.
     pub viscous: Viscous,
@@ -242,6 +243,19 @@ impl Material {
     #[must_use]
     pub fn is_dense(&self, density: f64) -> bool {
         density >= self.grains.loosest_density()
+    }
+
+    /// Lowest pressure that it bears at a shear rate gamma [Pa]; what is pulled more parts. Grains bear none, nor does what flows.
+    /// A fluid with a yield stress hangs together: stretched along a free surface it has -tau, and at the root of a deep notch, the
+    /// most that its own stress can make, -(1 + pi) tau (Hill 1949, doi 10.1093/qjmam/2.1.40).
+    #[inline]
+    #[must_use]
+    pub fn least_pressure(&self, gamma: f64) -> f64 {
+        if self.is_fluid() && self.cohesion > 0.0 {
+            -(1.0 + PI) * (self.cohesion + self.viscous.stress(gamma))
+        } else {
+            0.0
+        }
     }
 
     /// The stress that scales the cap of the viscosity [Pa]: cohesion + mu_s p. It is the yield stress for laws that

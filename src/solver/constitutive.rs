@@ -114,11 +114,19 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Pressure [Pa] and what compression of the grains changes in the inertial number [1]: [A] eqs. 41, 43, 44; of fluids
-    /// and saturated grains [B] eq. 3.
+    /// and saturated grains [B] eq. 3, with the tension that [`Material::least_pressure`] allows.
     #[inline]
     pub(super) fn load(&self, m: &Material, rho: f64, relaxed: f64) -> (f64, f64) {
         let c = self.sound_speed_of(m);
         let rest = m.rest_density();
+        if rho < rest && m.is_fluid() {
+            let least = if m.is_dense(rho) {
+                m.least_pressure(relaxed)
+            } else {
+                0.0
+            };
+            return (least.max(c * c * (rho - rest)), 1.0);
+        }
         let compressibility = 1.0 / (rest * c * c);
         let b = m.grains.dilatancy_factor(compressibility) * relaxed * relaxed;
         let loosest = m.grains.loosest_density() / rest;

@@ -16,6 +16,7 @@ mod phases;
 mod rest;
 mod rheology;
 mod silo;
+mod tension;
 mod walls;
 
 use sandgate::component::{Component, ValueReference};

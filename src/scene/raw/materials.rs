@@ -146,7 +146,7 @@ table! {
         optional consistency: Viscosity, in Range::from(0.0);
         /// Flow index n (1 if left out): 1 Newton and Bingham, below 1 shear-thinning, above 1 shear-thickening.
         optional flow_index: Ratio, in Range::within(0.1, 3.0);
-        /// Yield stress (0 if left out): below it nothing shears.
+        /// Yield stress (0 if left out): below it nothing shears, and with it the fluid hangs together: it bears tension of up to (1 + pi) times its shear stress.
         optional yield_stress: Pressure, in Range::from(0.0);
         /// Artificial viscosity alpha, what the viscosity of Newton's fluids is made up to: damps what water leaves undamped, and adds nothing to a fluid whose viscosity is at least alpha density h c/(2 (D + 2)). Fluids that yield or thin have none.
         optional artificial_viscosity: Ratio, in Range::within(0.0, 1.0), default 0.02;

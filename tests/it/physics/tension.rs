@@ -1,0 +1,72 @@
+//! Tension that fluids with a yield stress bear, and others do not.
+
+use sandgate::scene;
+use sandgate::solver::{Solver, SolverError, StepInputs};
+
+const DENSITY: f64 = 1500.0;
+const YIELD: f64 = 300.0;
+const G: f64 = 9.81;
+
+/// Longest strip that bears its own weight [m]: in the plane what stretches bears twice its yield stress.
+const LONGEST: f64 = 2.0 * YIELD / (DENSITY * G);
+
+/// Mean speed along gravity of a strip of so many times that length, 12 mm wide, that hangs from a wall for half a second; or the
+/// error where it fell out of the domain.
+fn hangs(length: f64, yield_stress: f64) -> Result<f64, SolverError> {
+    let text = format!(
+        r#"
+name = "strip"
+[domain]
+lower = [-0.02, -0.1]
+upper = [0.3, 0.1]
+gravity = [{G}, 0]
+[numerics]
+spacing = 0.0015
+sound_speed = 10
+sleep = false
+[materials.mud]
+law = "fluid"
+density = {DENSITY}
+consistency = 10
+yield_stress = {yield_stress}
+[bodies.strip]
+material = "mud"
+box = {{ lower = [0, -0.006], upper = [{}, 0.006] }}
+[walls.top]
+polyline = [[0, 0.08], [0, -0.08]]
+[run]
+step = 0.5
+until = 0.5
+"#,
+        length * LONGEST
+    );
+    let scene = scene::parse("strip.toml", &text).unwrap_or_else(|e| panic!("{e}"));
+    let (plan, mut state) = scene::build::<2>(&scene).unwrap();
+    let mut solver = Solver::new(plan, 1);
+    solver.start(&mut state);
+    let inputs = StepInputs {
+        openings: &[],
+        rates: &[],
+    };
+    while state.time < 0.5 {
+        solver.step(&mut state, 0.5, &inputs, &mut |_, _| {})?;
+    }
+    let speeds = state.grains.velocity.iter().map(|v| v[0]);
+    Ok(speeds.sum::<f64>() / state.grains.len() as f64)
+}
+
+#[test]
+fn a_strip_of_clay_hangs_by_its_yield_stress_and_a_longer_one_falls() {
+    let still = hangs(0.9, YIELD).unwrap();
+    println!("0.9 of the longest: {still:.1e} m/s");
+    assert!(still.abs() < 1e-4, "{still}");
+    assert!(hangs(1.5, YIELD).is_err(), "it must fall");
+}
+
+/// The same weight on a tenth of the yield stress is far too long, and water bears no tension at all.
+#[test]
+fn what_yields_sooner_and_what_flows_fall() {
+    for yield_stress in [30.0, 0.0] {
+        assert!(hangs(0.9, yield_stress).is_err(), "{yield_stress}");
+    }
+}
