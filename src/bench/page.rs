@@ -104,13 +104,13 @@ pub fn demands(run: &SpeedRun) -> Vec<Demand> {
         },
         Demand {
             what: "pair sweep against the plain scalar kernel over neighbour lists",
-            asked: "not asked: a faster rival",
+            asked: "nothing (a faster rival)",
             measured: times(roofline().map(|r| r.times_plain)).1,
             verdict: Verdict::Reported,
         },
         Demand {
             what: "pair sweep against its own plain scalar form over the same lists",
-            asked: "not asked: work for work",
+            asked: "nothing (work for work)",
             measured: times(own()).1,
             verdict: Verdict::Reported,
         },

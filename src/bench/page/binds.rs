@@ -51,8 +51,8 @@ fn binds(run: &SpeedRun) -> String {
     let (small, large) = ends.map_or((0, 0), |(s, l)| (s.particles, l.particles));
     format!(
         "- **Memory, from some thousand particles on.** A group of four pairs keeps 112 bytes in the plane (neighbours, two \
-         components of the gradient, one coefficient), about 0.9 kB a particle: 2,000 particles fit a core's cache of 2 MB, \
-         8,000 do not. From {small} to {large} particles the pair sweep, which writes them, takes {:.1} times as long for a \
+         components of the gradient, one coefficient), about 0.9 kB a particle: 2,000 particles are 1.8 MB, about \
+         what a core's own cache holds, 8,000 are 7 MB. From {small} to {large} particles the pair sweep, which writes them, takes {:.1} times as long for a \
          particle, the stress sweep, which reads most of them, {:.1} times, the force sweep {:.1} times; the roofline kernel, \
          which keeps nothing for a pair, {kernel:.1} times. This, not arithmetic, makes the cost a particle grow, and it is why \
          fewer bytes a pair would pay more than faster sums.\n\
