@@ -122,7 +122,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
                 ),
                 step,
                 Rule::Report(None),
-                "without the surface's roughness, which grows as the spacing falls",
+                "without the surface's roughness",
             ));
         }
         let order = || Some((steps[0]? / steps[2]?).log2() / 2.0);
