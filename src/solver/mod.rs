@@ -155,6 +155,8 @@ pub struct Solver<const D: usize> {
     openness: Vec<f64>,
     /// Shift velocity of each particle in the step [m/s]; empty in scenes that do not shift.
     shift: Vec<Vector<D>>,
+    /// Its divergence [1/s]; empty likewise.
+    shift_divergence: Vec<f64>,
     viscosity: Vec<f64>,
     pair_viscosity: Vec<f64>,
     inertial_number: Vec<f64>,
@@ -261,6 +263,7 @@ impl<const D: usize> Solver<D> {
             mirrors: Vec::new(),
             openness: Vec::new(),
             shift: Vec::new(),
+            shift_divergence: Vec::new(),
             viscosity: Vec::new(),
             pair_viscosity: Vec::new(),
             inertial_number: Vec::new(),

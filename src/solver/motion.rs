@@ -7,7 +7,7 @@ use super::outputs::three;
 use super::{Solver, SolverError};
 
 impl<const D: usize> Solver<D> {
-    /// v and x to the end of the step (symplectic Euler), and the density's diffusion before lists may reorder rows.
+    /// v and x to the end of the step (symplectic Euler), and what diffusion and shifting do to density before lists may reorder rows.
     pub(super) fn move_grains(&mut self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
         let (new, prediction) = (&self.viscous.velocity, &self.prediction);
         let is_bad = |i: usize| !new[i].iter().all(|c| c.is_finite());
@@ -31,9 +31,13 @@ impl<const D: usize> Solver<D> {
             []
         });
         let (a, rho) = (&mut grains.viscous_acceleration, &mut grains.density);
+        let divergence = &self.shift_divergence;
         self.workers.both(a, rho, |i, a, rho| {
             *a = std::array::from_fn(|k| (new[i][k] - prediction[i].velocity[k]) / dt);
             *rho += dt * prediction[i].diffusion;
+            if let Some(divergence) = divergence.get(i) {
+                *rho *= (-dt * divergence).exp();
+            }
             []
         });
         if self.geometry.is_axisymmetric() {

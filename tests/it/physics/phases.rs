@@ -90,6 +90,19 @@ fn fluids_in_a_channel_have_the_exact_profile() {
     }
 }
 
+/// What shifting takes out of a closed channel comes out of its density: without (SH2) pressure rises for good.
+#[test]
+fn shifting_does_not_pump_a_closed_channel_up() {
+    let scene = channel("consistency = 1", 1000.0);
+    let pressure = |time: f64| {
+        let (solver, _) = solve(&scene, time);
+        solver.pressure().iter().sum::<f64>() / solver.pressure().len() as f64
+    };
+    let (early, late) = (pressure(1.0), pressure(3.0));
+    println!("mean pressure {early:.1} Pa at 1 s, {late:.1} Pa at 3 s");
+    assert!((late - early).abs() < 5.0, "{early} {late}");
+}
+
 /// Water, 40 mm, over 60 mm of silt in a box of 0.15 m.
 fn layers(slip: &str) -> Scene {
     parse(&format!(
