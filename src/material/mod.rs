@@ -246,7 +246,7 @@ impl Material {
     }
 
     /// Lowest pressure that it bears at a shear rate gamma [Pa]; what is pulled more parts. Grains bear none, nor does what flows.
-    /// A fluid with a yield stress hangs together: stretched along a free surface it has -tau, and at the root of a deep notch, the
+    /// A fluid with a yield stress hangs together: stretched along a free surface it has -tau, and between two deep notches, the
     /// most that its own stress can make, -(1 + pi) tau (Hill 1949, doi 10.1093/qjmam/2.1.40).
     #[inline]
     #[must_use]

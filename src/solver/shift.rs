@@ -15,7 +15,7 @@
 //!   d rho_i/dt = -rho_i [sum_j (du_j - du_i) . g_ij - 2 du_i . sum_walls g_iw]                      (SH2)
 //!
 //! div v of a flow whose places grow uneven is the rate at which sum_j V_j W_ij grows. Shifting takes that back; while density did
-//! not see it, pressure in a closed channel rose by 15 to 30 Pa a second, for good.
+//! not see it, pressure in closed channels rose by 10 to 30 Pa a second, for good (not Bingham's).
 //!
 //! Before walls bore weight along themselves (`lean`) a tank of water at rest had 90 mJ after 1 s with [B] 19 and 20, 12 without
 //! shifts at surfaces, 1.9 with (SH1) as well, 1.6 without shifting; docs/theory.md has what is left now.
