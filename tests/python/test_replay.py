@@ -117,14 +117,24 @@ def recorded():
     return topics
 
 
-def replay(*arguments, base=BASE):
-    """What a subscriber gets of a replay, by topic, and what the program said."""
-    process, endpoint = start("log", "replay", LOG, "--wait", *arguments)
+def replay(*arguments, take=lambda: None, buffers=""):
+    """What a subscriber that spends `take` on every message gets of a replay, by topic, and what the program said."""
+    process, endpoint = start("log", "replay", LOG, "--wait", "--listen", f"tcp/127.0.0.1:0{buffers}", *arguments)
     arrived = queue.Queue()
+
+    def arrive(sample):
+        take()
+        arrived.put(sample)
+
     with open_session(endpoint) as session:
-        subscriber = session.declare_subscriber(f"{base}/out/**", arrived.put)
+        subscriber = session.declare_subscriber(f"{BASE}/out/**", arrive)
         out, err = process.communicate(timeout=120)
         assert process.returncode == 0, err
+        # What was sent is on its way to this thread when the program has ended.
+        published = int(re.search(r"published (\d+) messages", out).group(1))
+        patience = time.monotonic() + 60
+        while arrived.qsize() < published and time.monotonic() < patience:
+            time.sleep(0.01)
         subscriber.undeclare()
     topics = {}
     while not arrived.empty():
@@ -139,6 +149,12 @@ def test_a_replay_is_what_was_recorded_byte_for_byte():
     topics, out = replay("--speed", "inf")
     assert topics == recorded()
     assert f"published {sum(map(len, topics.values()))} messages" in out
+
+
+def test_a_replay_waits_for_who_reads_slowly():
+    """Sockets that hold little and 2 ms a message: most of it is on its way when the last message is published."""
+    topics, _ = replay("--speed", "inf", take=lambda: time.sleep(0.002), buffers="#so_sndbuf=4096;so_rcvbuf=4096")
+    assert topics == recorded()
 
 
 def test_a_replay_keeps_its_time_and_its_window():

@@ -10,6 +10,7 @@ mod outlet;
 mod press;
 mod replies;
 mod session;
+mod unsent;
 
 pub use self::beside::Beside;
 pub use self::outlet::Outlet;

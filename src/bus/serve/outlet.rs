@@ -3,7 +3,7 @@
 //! Answers no request and takes no set-point; those who come late get the last value of each key.
 
 use super::replies::{encoding, find_last_values};
-use super::{ServeOptions, failed, session, spawn};
+use super::{ServeOptions, failed, session, spawn, unsent};
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
 use crate::bus::publish::{LastValues, Publication};
@@ -105,7 +105,8 @@ impl Outlet {
     }
 
     /// Publishes `bytes` of the protobuf message `schema` at `key`. Nothing is dropped on the way, particles neither: a
-    /// subscriber that stands still holds it up for as long as Zenoh waits before it closes the connection.
+    /// subscriber that stands still holds it up for as long as Zenoh waits before it closes the connection, and
+    /// [`wait_until_taken`](Self::wait_until_taken) waits for one that is slow.
     ///
     /// # Errors
     /// [`BusError::Zenoh`]: the session is closed.
@@ -133,6 +134,13 @@ impl Outlet {
                 .map_err(failed("publish"))?;
         }
         Ok(())
+    }
+
+    /// Waits until subscribers took all that was published, until they take nothing for 5 s, or until `stop`. Gives the
+    /// bytes that the system still holds for them: these, and what waits behind them, are lost with [`close`](Self::close).
+    #[must_use]
+    pub fn wait_until_taken(&self, stop: &AtomicBool) -> u64 {
+        unsent::wait_until_taken(stop)
     }
 
     /// Ends the session.

@@ -128,6 +128,12 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         player.latest.as_secs_f64() * 1e3,
         player.last.as_secs_f64() * 1e3
     ))?;
+    let left = player.outlet.wait_until_taken(&stop);
+    if left > 0 {
+        eprintln!(
+            "warning: subscribers have not taken the last {left} bytes and more of it, which are lost to them"
+        );
+    }
     Ok(player.outlet.close()?)
 }
 
