@@ -110,6 +110,7 @@ impl Moment<'_> {
             Source::ShareDilute => self.statistics.share_dilute,
             Source::ShareIllPosed => self.statistics.share_ill_posed,
             Source::CreepRate => self.statistics.creep_rate,
+            Source::ShareFast => self.statistics.share_fast,
         }
     }
 

@@ -65,6 +65,8 @@ pub struct Statistics {
     pub share_ill_posed: f64,
     /// Root mean square, by mass, of the shear rate of material below its static strength [1/s].
     pub creep_rate: f64,
+    /// Share of the mass under pressure that moves faster than a fifth of its sound speed [1].
+    pub share_fast: f64,
 }
 
 /// Sums over all particles present, for checks of conservation. Of rings: of whole rings.

@@ -401,6 +401,7 @@ impl<const D: usize> Engine for Simulation<D> {
             share_dilute: validity.share_dilute,
             share_ill_posed: validity.share_ill_posed,
             creep_rate: validity.creep_rate,
+            share_fast: validity.share_fast,
         }
     }
 

@@ -2,18 +2,23 @@
 //! somebody asks, once a communication step.
 
 use crate::material::{Material, Rheology, ill_posedness};
+use crate::math::{dot, sub};
 use crate::state::State;
 
 use super::Solver;
+use super::lists::mean;
 
 /// Material with I above this is outside the dense regime ([A] section 2).
 const DENSE_LIMIT: f64 = 0.3;
 
+/// Speed over sound speed above which its own dynamic pressure, rho v^2/2, compresses material by more than 2 %.
+const FAST: f64 = 0.2;
+
 /// Rounding of viscosity times shear rate.
 const ROUNDING: f64 = 1e-9;
 
-/// Figures over the loaded mass of what has friction, (effective) p > 0: without pressure it carries no stress, whatever its
-/// I. 0 without load.
+/// Figures over loaded mass, p > 0; but for `share_fast` of what has friction, p the effective one: without pressure it
+/// carries no stress, whatever its I. 0 without load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Validity {
     /// Share with I > 0.3 [1].
@@ -23,6 +28,9 @@ pub struct Validity {
     /// Root mean square, by mass, of the shear rate of material whose shear stress is below its static strength [1/s]:
     /// 0 if all that should rest does.
     pub creep_rate: f64,
+    /// Share of all material that moves faster than a fifth of its sound speed against walls, or against its own mean where
+    /// there are none [1].
+    pub share_fast: f64,
 }
 
 impl<const D: usize> Solver<D> {
@@ -32,10 +40,23 @@ impl<const D: usize> Solver<D> {
         let grains = &state.grains;
         let (mut loaded, mut dilute, mut ill_posed) = (0.0, 0.0, 0.0);
         let (mut below, mut creep) = (0.0, 0.0);
+        let (mut pressed, mut fast) = (0.0, 0.0);
+        let frame = if self.walls.is_empty() {
+            mean(&grains.velocity, &grains.mass)
+        } else {
+            mean(&self.walls.velocity, &self.walls.weight)
+        };
         for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
             let p = self.yield_pressure(i);
             let m = grains.mass[i];
             let material = &self.materials[grains.phase[i] as usize];
+            if self.pressure[i] > 0.0 {
+                pressed += m;
+                let v = sub(&grains.velocity[i], &frame);
+                if dot(&v, &v) > (FAST * self.sound_speed_of(material)).powi(2) {
+                    fast += m;
+                }
+            }
             if p <= 0.0 || material.is_fluid() {
                 continue;
             }
@@ -58,6 +79,7 @@ impl<const D: usize> Solver<D> {
             share_dilute: over(dilute, loaded),
             share_ill_posed: over(ill_posed, loaded),
             creep_rate: over(creep, below).sqrt(),
+            share_fast: over(fast, pressed),
         }
     }
 

@@ -17,6 +17,7 @@ mod rest;
 mod rheology;
 mod silo;
 mod tension;
+mod validity;
 mod walls;
 
 use sandgate::component::{Component, ValueReference};

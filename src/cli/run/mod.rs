@@ -7,6 +7,7 @@
 
 mod folder;
 mod log;
+mod notes;
 mod plot;
 mod progress;
 mod series;

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::folder::MADE_BY;
+use super::notes::notes;
 use super::session::Session;
 use crate::cli::CliError;
 use crate::component::{Causality, ValueKind};
@@ -55,6 +56,7 @@ pub(super) fn json(
         "share_dilute": number(figures.share_dilute),
         "share_ill_posed": number(figures.share_ill_posed),
         "creep_rate": number(figures.creep_rate),
+        "share_fast": number(figures.share_fast),
         "mass": {
             "initial": number(ledger.initial),
             "inflow": number(ledger.inflow),
@@ -122,7 +124,7 @@ fn variables(session: &Session) -> Result<Map<String, Value>, CliError> {
 }
 
 /// Smallest and largest sample of a scalar with their times [s].
-fn extremes(session: &Session, name: &str) -> Option<((f64, f64), (f64, f64))> {
+pub(super) fn extremes(session: &Session, name: &str) -> Option<((f64, f64), (f64, f64))> {
     let column = session.series.columns.iter().find(|c| c.name == name)?;
     let samples = || {
         column
@@ -171,6 +173,9 @@ pub(super) fn table(session: &Session, status: &str) -> String {
     ];
     lines.extend(variable_rows(session));
     lines.push(String::new());
+    for note in notes(session) {
+        lines.extend([note, String::new()]);
+    }
     lines.push(format!("results in {}", session.folder.path().display()));
     lines.join("\n")
 }

@@ -44,6 +44,7 @@ pub(in crate::component) enum Source {
     ShareDilute,
     ShareIllPosed,
     CreepRate,
+    ShareFast,
 }
 
 /// A row before it has its number.
@@ -431,6 +432,13 @@ fn totals() -> impl Iterator<Item = Row> {
             Source::CreepRate,
             "root mean square, by mass, of the shear rate of material below its static strength: 0 if all that should rest does",
         ),
+        Row::output(
+            "validity.share_fast",
+            "1",
+            Source::ShareFast,
+            "share of the mass under pressure that moves faster than a fifth of the sound speed: give numerics.expected_speed if much does",
+        )
+        .display(PERCENT),
     ]
     .into_iter()
 }

@@ -1,0 +1,94 @@
+//! `validity.share_fast`: what moves faster than a fifth of the sound speed, and against what.
+
+use super::Unit;
+use sandgate::scene;
+
+const SOUND: f64 = 10.0;
+
+/// Water that glides at `water` over a belt that runs at `belt` [m/s]; its share of fast mass at the end.
+fn over_a_belt(water: f64, belt: f64) -> f64 {
+    let text = format!(
+        r#"
+name = "stream"
+title = "A stream over a belt without friction"
+dimension = 2
+[domain]
+lower = [0, -0.05]
+upper = [0.2, 0.2]
+periodic = ["x"]
+[numerics]
+spacing = 0.01
+sound_speed = {SOUND}
+[materials.water]
+law = "fluid"
+density = 1000
+consistency = 1e-3
+[bodies.stream]
+material = "water"
+box = {{ lower = [0, 0], upper = [0.2, 0.1] }}
+velocity = [{water}, 0]
+[walls.belt]
+polyline = [[0, 0], [0.2, 0]]
+slip = "free_slip"
+velocity = [{belt}, 0]
+[run]
+step = 0.01
+until = 0.1
+"#
+    );
+    let mut unit = Unit::new(&scene::parse("stream.toml", &text).unwrap());
+    unit.run_to(0.02);
+    unit.get("validity.share_fast")
+}
+
+#[test]
+fn fast_is_faster_than_a_fifth_of_the_sound_speed_against_walls() {
+    assert_eq!(over_a_belt(0.19 * SOUND, 0.0), 0.0);
+    assert!(over_a_belt(0.21 * SOUND, 0.0) > 0.9);
+    assert_eq!(over_a_belt(0.21 * SOUND, 0.1 * SOUND), 0.0);
+    assert!(over_a_belt(0.0, -0.21 * SOUND) > 0.9);
+}
+
+/// Without walls, against the mean of all: two drops that meet are as fast in any frame.
+#[test]
+fn without_walls_fast_is_the_same_in_any_frame() {
+    let share = |frame: f64| {
+        let text = format!(
+            r#"
+name = "drops"
+title = "Two drops that meet"
+dimension = 2
+[domain]
+lower = [-2, -1]
+upper = [2, 1]
+gravity = 0
+[numerics]
+spacing = 0.01
+sound_speed = {SOUND}
+[materials.water]
+law = "fluid"
+density = 1000
+consistency = 1e-3
+[bodies.left]
+material = "water"
+box = {{ lower = [-0.1, -0.1], upper = [0, 0.1] }}
+velocity = [{}, 0]
+[bodies.right]
+material = "water"
+box = {{ lower = [0, -0.1], upper = [0.1, 0.1] }}
+velocity = [{}, 0]
+[run]
+step = 0.005
+until = 0.1
+"#,
+            frame + 0.3 * SOUND,
+            frame - 0.3 * SOUND,
+        );
+        let mut unit = Unit::new(&scene::parse("drops.toml", &text).unwrap());
+        unit.run_to(0.005);
+        unit.get("validity.share_fast")
+    };
+    let (still, moving) = (share(0.0), share(2.0 * SOUND));
+    assert!(still > 0.05 && still < 1.0, "{still}");
+    assert!((still - moving).abs() < 0.01, "{still} {moving}");
+}
