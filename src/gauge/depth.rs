@@ -44,17 +44,42 @@ impl<const D: usize> DepthLine<D> {
         if filled == self.count(view) {
             return Ok(self.length);
         }
+        Ok(self.crossing(view, filled))
+    }
+
+    /// The height above place `filled` where S falls below 0.5 [m], S >= 0.5 there.
+    ///
+    /// By false position, the weight of the end that stays halved (Illinois): S is as smooth as the kernel.
+    fn crossing(&self, view: &View<D>, filled: usize) -> f64 {
+        let excess = |height: f64| self.fill(view, height) - 0.5;
         let (mut low, mut high) = (self.height(view, filled), self.height(view, filled + 1));
-        // 40 halvings take a quarter of a spacing below any rounding that matters.
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if self.fill(view, middle) >= 0.5 {
-                low = middle;
-            } else {
-                high = middle;
+        let (mut above, mut below) = (excess(low), excess(high));
+        let fine = 1e-12 * view.spacing;
+        let mut last_rose = None;
+        // Some ten; where S jumps (a wall ends, a piece ends) as many as halving the interval takes.
+        for _ in 0..60 {
+            if high - low <= fine {
+                break;
             }
+            let share = above / (above - below);
+            // Never at an end, so that the interval closes in from both sides.
+            let next = low + share.clamp(0.01, 0.99) * (high - low);
+            let there = excess(next);
+            let rose = there >= 0.0;
+            if rose {
+                (low, above) = (next, there);
+                if last_rose == Some(true) {
+                    below *= 0.5;
+                }
+            } else {
+                (high, below) = (next, there);
+                if last_rose == Some(false) {
+                    above *= 0.5;
+                }
+            }
+            last_rose = Some(rose);
         }
-        Ok(low)
+        low
     }
 
     /// Whether the depth is at least `least` [m], for less than what the depth itself costs.

@@ -42,6 +42,10 @@ pub trait Lanes: Copy {
     fn min(self, a: Self::Group, b: Self::Group) -> Self::Group;
     /// x where a > b, else 0.
     fn where_greater(self, a: Self::Group, b: Self::Group, x: Self::Group) -> Self::Group;
+    /// Bit k: whether 0 < a_k < b_k.
+    fn between(self, a: Self::Group, b: Self::Group) -> usize;
+    /// Those of `items` whose bit is set, in their order; what follows them is any of the items.
+    fn pack(self, kept: usize, items: &[u32; LANES]) -> [u32; LANES];
     /// The first components of four rows, the second ones, ...
     fn transpose(self, rows: [&Quad; LANES]) -> [Self::Group; LANES];
 }
@@ -134,6 +138,13 @@ impl<L: Lanes> Four<L> {
         self.with(self.lanes.where_greater(self.group, b.group, x.group))
     }
 
+    /// Those of four items whose number here is above 0 and below b, in their order, at the front; and how many.
+    #[inline(always)]
+    pub fn pack_between(self, b: Self, items: &[u32; LANES]) -> ([u32; LANES], usize) {
+        let kept = self.lanes.between(self.group, b.group);
+        (self.lanes.pack(kept, items), kept.count_ones() as usize)
+    }
+
     #[inline(always)]
     fn with(self, group: L::Group) -> Self {
         Self {
@@ -180,6 +191,43 @@ impl<L: Lanes> SubAssign for Four<L> {
         *self = *self - b;
     }
 }
+
+/// Subsets of four.
+const SETS: usize = 1 << LANES;
+
+/// For each subset, by its bits, which of the four are in it, in their order.
+const PACKED: [[u8; LANES]; SETS] = {
+    let mut table = [[0; LANES]; SETS];
+    let mut set = 0;
+    while set < SETS {
+        let (mut k, mut count) = (0, 0);
+        while k < LANES {
+            if (set >> k) & 1 == 1 {
+                table[set][count] = k as u8;
+                count += 1;
+            }
+            k += 1;
+        }
+        set += 1;
+    }
+    table
+};
+
+/// The same by bytes of four-byte items.
+#[cfg(target_arch = "x86_64")]
+const PACKED_BYTES: [[u8; 4 * LANES]; SETS] = {
+    let mut table = [[0; 4 * LANES]; SETS];
+    let mut set = 0;
+    while set < SETS {
+        let mut byte = 0;
+        while byte < 4 * LANES {
+            table[set][byte] = 4 * PACKED[set][byte / 4] + (byte % 4) as u8;
+            byte += 1;
+        }
+        set += 1;
+    }
+    table
+};
 
 /// Plain arrays: any machine.
 #[derive(Clone, Copy, Debug)]
@@ -236,6 +284,15 @@ impl Lanes for Portable {
         Quad(std::array::from_fn(kept))
     }
     #[inline(always)]
+    fn between(self, a: Quad, b: Quad) -> usize {
+        let bit = |k: usize| usize::from(a.0[k] > 0.0 && a.0[k] < b.0[k]) << k;
+        (0..LANES).map(bit).sum()
+    }
+    #[inline(always)]
+    fn pack(self, kept: usize, items: &[u32; LANES]) -> [u32; LANES] {
+        PACKED[kept % SETS].map(|k| items[usize::from(k) % LANES])
+    }
+    #[inline(always)]
     fn transpose(self, rows: [&Quad; LANES]) -> [Quad; LANES] {
         std::array::from_fn(|k| Quad(rows.map(|row| row.0[k])))
     }
@@ -243,9 +300,9 @@ impl Lanes for Portable {
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use super::{LANES, Lanes, Quad};
+    use super::{LANES, Lanes, PACKED_BYTES, Quad, SETS};
     use pulp::{cast, f64x4, x86::V3};
-    use std::arch::x86_64::__m256d;
+    use std::arch::x86_64::{__m256d, _CMP_GT_OQ, _CMP_LT_OQ};
 
     /// A closure that becomes part of its caller. Called once by value, a closure hides behind a function of its own that
     /// no instructions are chosen for.
@@ -304,6 +361,18 @@ mod avx2 {
         #[inline(always)]
         fn where_greater(self, a: f64x4, b: f64x4, x: f64x4) -> f64x4 {
             self.select_f64x4(self.cmp_gt_f64x4(a, b), x, self.splat_f64x4(0.0))
+        }
+        #[inline(always)]
+        fn between(self, a: f64x4, b: f64x4) -> usize {
+            let avx = self.avx;
+            let above = avx._mm256_cmp_pd::<_CMP_GT_OQ>(cast(a), avx._mm256_setzero_pd());
+            let below = avx._mm256_cmp_pd::<_CMP_LT_OQ>(cast(a), cast(b));
+            avx._mm256_movemask_pd(avx._mm256_and_pd(above, below)) as usize
+        }
+        #[inline(always)]
+        fn pack(self, kept: usize, items: &[u32; LANES]) -> [u32; LANES] {
+            let bytes = cast(PACKED_BYTES[kept % SETS]);
+            cast(self.ssse3._mm_shuffle_epi8(cast(*items), bytes))
         }
         #[inline(always)]
         fn transpose(self, rows: [&Quad; LANES]) -> [f64x4; LANES] {
@@ -397,6 +466,11 @@ mod tests {
             Four::splat(lanes, a.largest()),
         ];
         results.extend(Four::transpose(lanes, rows.each_ref()));
+        for (x, limit) in [(a, c), (b, d), (d, a), (c, d)] {
+            let (items, count) = x.pack_between(limit, &[5, 6, 7, 8]);
+            let item = |k: usize| if k < count { f64::from(items[k]) } else { 0.0 };
+            results.push(Four::gather(lanes, item));
+        }
         // Not a number has no sign worth comparing.
         results
             .into_iter()
@@ -417,5 +491,7 @@ mod tests {
             portable[12],
             [1.0, 0.1, f64::INFINITY, 0.3].map(f64::to_bits)
         );
+        // 0 < [1, -0, 1e-300, 3] < [inf, 2, 1e300, -1].
+        assert_eq!(portable[16], [5.0, 7.0, 0.0, 0.0].map(f64::to_bits));
     }
 }

@@ -76,20 +76,6 @@ impl<const D: usize> Row<D> {
 }
 
 impl<const D: usize> Solver<D> {
-    /// a - b along axis k, nearest image.
-    #[inline(always)]
-    fn offset<L: Lanes>(&self, lanes: L, k: usize, a: Four<L>, b: Four<L>) -> Four<L> {
-        let d = a - b;
-        let length = self.periodic.length[k];
-        if length <= 0.0 {
-            return d;
-        }
-        let whole = Four::splat(lanes, length);
-        let half = Four::splat(lanes, 0.5 * length);
-        let minus_half = Four::splat(lanes, -0.5 * length);
-        d - d.where_greater(half, whole) + minus_half.where_greater(d, whole)
-    }
-
     /// Writes the neighbours of particle i within the support to the front of `near`, filled up with i to whole groups;
     /// returns their number.
     #[inline(always)]
@@ -103,10 +89,8 @@ impl<const D: usize> Solver<D> {
         near: &mut [u32],
     ) -> usize {
         let support = self.kernel.support();
-        // Just inside: the kernel vanishes there to the third order, and what is divided by it must not.
-        let limit = (1.0 - 1e-9) * support * support;
-        // Positive numbers are ordered as their bits are; 0, no neighbour, becomes the largest.
-        let limit_bits = limit.to_bits() - 1;
+        // Just inside: the kernel vanishes there to the third order, and what is divided by it must not. At 0 is no neighbour.
+        let limit = Four::splat(lanes, (1.0 - 1e-9) * support * support);
         let mut here = [Four::splat(lanes, 0.0); D];
         for k in 0..D {
             here[k] = Four::splat(lanes, x[k]);
@@ -116,13 +100,12 @@ impl<const D: usize> Solver<D> {
             let there = motions::<L, D>(lanes, records, j).x;
             let mut r2 = Four::splat(lanes, 0.0);
             for k in 0..D {
-                let d = self.offset(lanes, k, here[k], there[k]);
+                let d = self.periodic.nearest(lanes, k, here[k] - there[k]);
                 r2 += d * d;
             }
-            for (j, r2) in j.iter().zip(r2.store().0) {
-                near[count] = *j;
-                count += usize::from(r2.to_bits().wrapping_sub(1) < limit_bits);
-            }
+            let (kept, more) = r2.pack_between(limit, j);
+            near[count..count + LANES].copy_from_slice(&kept);
+            count += more;
         }
         let full = count.next_multiple_of(LANES);
         near[count..full].fill(i as u32);
@@ -158,15 +141,14 @@ impl<const D: usize> Solver<D> {
         let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
         let (mut pair_shear2, mut speed2, mut fourfold) = (zero, zero, [zero; 2]);
         let (mut side, mut nearness) = ([zero; D], zero);
-        let Block { j, g, c, .. } = block;
         let groups = near.as_chunks::<LANES>().0;
-        j.extend_from_slice(groups);
-        for j in groups {
+        let (g, c) = block.next_row(groups);
+        for ((j, g), c) in groups.iter().zip(g).zip(c) {
             let other = motions::<L, D>(lanes, records, j);
             let (mut x, mut v) = ([zero; D], [zero; D]);
             let (mut r2, mut v2, mut vx) = (zero, zero, zero);
             for k in 0..D {
-                x[k] = self.offset(lanes, k, here[k], other.x[k]);
+                x[k] = self.periodic.nearest(lanes, k, here[k] - other.x[k]);
                 v[k] = own[k] - other.v[k];
                 r2 += x[k] * x[k];
                 v2 += v[k] * v[k];
@@ -201,8 +183,8 @@ impl<const D: usize> Solver<D> {
                 fourfold[1] -= weight * (p + p) * q;
             }
             speed2 = speed2.max(v2);
-            g.push(weights);
-            c.push((pair_form * inverse).store());
+            *g = weights;
+            *c = (pair_form * inverse).store();
         }
         let mut sums = Row {
             pair_shear2: dissipation * pair_shear2.sum(),

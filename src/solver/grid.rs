@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::math::Vector;
+use crate::math::{Four, Lanes, Vector};
 
 /// Which axes repeat, and over what length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +33,19 @@ impl<const D: usize> Periodic<D> {
                 d
             }
         })
+    }
+
+    /// The nearest image of a difference along axis k.
+    #[inline(always)]
+    pub(super) fn nearest<L: Lanes>(&self, lanes: L, k: usize, d: Four<L>) -> Four<L> {
+        let length = self.length[k];
+        if length <= 0.0 {
+            return d;
+        }
+        let whole = Four::splat(lanes, length);
+        let half = Four::splat(lanes, 0.5 * length);
+        let minus_half = Four::splat(lanes, -0.5 * length);
+        d - d.where_greater(half, whole) + minus_half.where_greater(d, whole)
     }
 
     /// Moves a point back into the periodic box.

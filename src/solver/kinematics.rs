@@ -102,7 +102,6 @@ impl<const D: usize> Solver<D> {
                 block,
                 &near[..count],
             );
-            block.group_ends.push(block.j.len() as u32);
             if !block.wall_row(row).is_empty()
                 && let Some(mut w) = self.wall_row(
                     state,

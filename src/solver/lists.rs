@@ -5,7 +5,7 @@
 //! motion for particles among themselves (a uniform speed costs nothing) and to walls for wall lists.
 
 use crate::boundary::WallPoints;
-use crate::math::{CHUNK, Vector, Workers, dot, norm, sub};
+use crate::math::{Arch, CHUNK, Four, LANES, Lanes, Vector, Workers, dot, in_lanes, norm, sub};
 use crate::state::Grains;
 
 use super::grid::{Grid, Near, Periodic};
@@ -78,7 +78,7 @@ impl<const D: usize> Lists<D> {
         grains: &Grains<D>,
         walls: &WallPoints<D>,
         periodic: &Periodic<D>,
-        workers: &Workers,
+        (workers, arch): (&Workers, Arch),
     ) {
         let n = grains.len();
         let x = &grains.listed;
@@ -90,24 +90,31 @@ impl<const D: usize> Lists<D> {
         workers.blocks(&mut self.blocks, &mut rows, |block, first, part| {
             block.clear();
             let (mut near, mut near_walls) = (Near::new(), Near::new());
-            for i in first..first + part.len() {
+            in_lanes!(arch, |lanes| for i in first..first + part.len() {
                 grid.find_runs(&x[i], &mut near);
                 for run in &near.runs {
                     let points = grid.points(run);
-                    block.add_neighbours(points.len(), |list| {
-                        keep_near(list, points, (i as u32, &x[i]), x, periodic, reach2)
+                    block.add_neighbours(points.len() + LANES, |list| {
+                        keep_near(lanes, list, points, &x[i], x, periodic, reach2)
                     });
                 }
                 wall_grid.find_runs(&x[i], &mut near_walls);
                 for run in &near_walls.runs {
                     let points = wall_grid.points(run);
-                    let none = (u32::MAX, &x[i]);
-                    block.add_walls(points.len(), |list| {
-                        keep_near(list, points, none, &walls.position, periodic, reach2)
+                    block.add_walls(points.len() + LANES, |list| {
+                        keep_near(
+                            lanes,
+                            list,
+                            points,
+                            &x[i],
+                            &walls.position,
+                            periodic,
+                            reach2,
+                        )
                     });
                 }
                 block.end_row(i as u32);
-            }
+            });
         });
         self.find_pieces(n);
     }
@@ -164,22 +171,39 @@ impl<const D: usize> Lists<D> {
     }
 }
 
-/// Writes those of `run` that are nearer than sqrt(`reach2`) to the front of `list`, without `own`; returns their number.
-#[inline]
-fn keep_near<const D: usize>(
+/// Writes those of `run` that are nearer to `here` than sqrt(`reach2`) to the front of `list`, which has room for `LANES` more than
+/// the run has; returns their number. A particle is near itself, too; sweeps leave it out.
+#[inline(always)]
+fn keep_near<L: Lanes, const D: usize>(
+    lanes: L,
     list: &mut [u32],
     run: &[u32],
-    (own, here): (u32, &Vector<D>),
+    here: &Vector<D>,
     points: &[Vector<D>],
     periodic: &Periodic<D>,
     reach2: f64,
 ) -> usize {
+    let limit = Four::splat(lanes, reach2);
+    // What lies at the same place is near, too.
+    let least = Four::splat(lanes, f64::MIN_POSITIVE);
     let mut count = 0;
-    for &j in run {
+    let (groups, rest) = run.as_chunks::<LANES>();
+    for j in groups {
+        let there = j.map(|j| &points[j as usize]);
+        let mut r2 = least;
+        for k in 0..D {
+            let d = Four::splat(lanes, here[k]) - Four::gather(lanes, |m| there[m][k]);
+            let d = periodic.nearest(lanes, k, d);
+            r2 += d * d;
+        }
+        let (kept, more) = r2.pack_between(limit, j);
+        list[count..count + LANES].copy_from_slice(&kept);
+        count += more;
+    }
+    for &j in rest {
         let d = periodic.difference(here, &points[j as usize]);
-        // Written always, counted if near: no branch that nothing predicts.
         list[count] = j;
-        count += usize::from(j != own && dot(&d, &d) < reach2);
+        count += usize::from(dot(&d, &d) < reach2);
     }
     count
 }

@@ -299,8 +299,12 @@ impl<const D: usize> Solver<D> {
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.listed_opening, 0.0);
         }
-        self.lists
-            .build(&state.grains, &self.walls, &self.periodic, &self.workers);
+        self.lists.build(
+            &state.grains,
+            &self.walls,
+            &self.periodic,
+            (&self.workers, self.arch),
+        );
         self.place_movers(state.pose.now);
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.opening, gate.rate);

@@ -128,7 +128,11 @@ impl<const D: usize> Solver<D> {
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.opening, gate.rate);
         }
-        self.lists
-            .build(&state.grains, &self.walls, &self.periodic, &self.workers);
+        self.lists.build(
+            &state.grains,
+            &self.walls,
+            &self.periodic,
+            (&self.workers, self.arch),
+        );
     }
 }

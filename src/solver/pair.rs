@@ -60,14 +60,14 @@ pub(super) struct Block<const D: usize> {
     filled: (usize, usize),
     /// Neighbours within the support of the row in hand, room for the longest row.
     pub(super) near: Vec<u32>,
-    /// Neighbours of each group.
+    /// Neighbours of each group; here and in `g` and `c` what lies behind the last row's end is left from earlier.
     pub(super) j: Vec<[u32; LANES]>,
     /// g of each group.
     pub(super) g: Vec<[Quad; D]>,
     /// c of each group.
     pub(super) c: Vec<Quad>,
     /// Where each row's groups end.
-    pub(super) group_ends: Vec<u32>,
+    group_ends: Vec<u32>,
     /// Rows that see walls.
     pub(super) wall_rows: Vec<WallRow<D>>,
     /// Images of neighbours across flat walls without slip, row after row; empty in scenes without fluids.
@@ -79,7 +79,8 @@ pub(super) struct Block<const D: usize> {
 }
 
 /// Lets `write` put up to `most` items at `end` and counts them in. Room is made once and kept: it is not cleared for each run.
-#[inline]
+// What writes may be compiled for the lanes' instructions: it must become part of its caller.
+#[inline(always)]
 fn append(
     list: &mut Vec<u32>,
     end: &mut usize,
@@ -100,13 +101,13 @@ impl<const D: usize> Block<D> {
     }
 
     /// Adds to the row in hand those of `most` neighbours that `write` puts in front and counts.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add_neighbours(&mut self, most: usize, write: impl FnOnce(&mut [u32]) -> usize) {
         append(&mut self.neighbours, &mut self.filled.0, most, write);
     }
 
     /// As `add_neighbours`, for wall points.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add_walls(&mut self, most: usize, write: impl FnOnce(&mut [u32]) -> usize) {
         append(&mut self.walls, &mut self.filled.1, most, write);
     }
@@ -130,7 +131,7 @@ impl<const D: usize> Block<D> {
         self.ends.len()
     }
 
-    /// Neighbours of a row, out to the skin; whole groups, the last filled with the particle itself.
+    /// Neighbours of a row, out to the skin, itself among them; whole groups, the last filled with the particle itself.
     pub(super) fn row(&self, row: usize) -> &[u32] {
         let start = if row == 0 { 0 } else { self.ends[row - 1].0 };
         &self.neighbours[start as usize..self.ends[row].0 as usize]
@@ -144,14 +145,28 @@ impl<const D: usize> Block<D> {
 
     /// Forgets groups, wall rows and contacts before a sweep makes them anew.
     pub(super) fn forget_pairs(&mut self) {
-        self.j.clear();
-        self.g.clear();
-        self.c.clear();
+        // Room for all that is listed, made once: no row has to ask for it, and lanes' registers outlive what they write.
+        let most = self.filled.0 / LANES;
+        if self.j.len() < most {
+            self.j.resize(most, [0; LANES]);
+            self.g.resize(most, [Quad::default(); D]);
+            self.c.resize(most, Quad::default());
+        }
         self.group_ends.clear();
         self.wall_rows.clear();
         self.images.clear();
         self.textures.clear();
         self.contacts.clear();
+    }
+
+    /// Adds a row of such groups; where its coefficients g and c belong.
+    #[inline(always)]
+    pub(super) fn next_row(&mut self, groups: &[[u32; LANES]]) -> (&mut [[Quad; D]], &mut [Quad]) {
+        let start = self.group_ends.last().map_or(0, |end| *end as usize);
+        let end = start + groups.len();
+        self.group_ends.push(end as u32);
+        self.j[start..end].copy_from_slice(groups);
+        (&mut self.g[start..end], &mut self.c[start..end])
     }
 
     /// Range of a row's groups.

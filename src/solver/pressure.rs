@@ -56,11 +56,17 @@ impl<const D: usize> Solver<D> {
         self.find_uneven_pressure();
         let mut prediction = std::mem::take(&mut self.prediction);
         let mut blocks = std::mem::take(&mut self.lists.blocks);
+        let plain = self.is_plain();
         self.workers
             .blocks(&mut blocks, &mut prediction, |block, first, out| {
                 in_lanes!(self.arch, |lanes| {
                     for (row, o) in out.iter_mut().enumerate() {
-                        *o = self.predict(lanes, state, &loads, dt, block, first + row, row);
+                        let at = (first + row, row);
+                        *o = if plain {
+                            self.predict::<_, true>(lanes, state, &loads, dt, block, at)
+                        } else {
+                            self.predict::<_, false>(lanes, state, &loads, dt, block, at)
+                        };
                     }
                 });
                 let mut rows = std::mem::take(&mut block.wall_rows);
@@ -110,6 +116,14 @@ impl<const D: usize> Solver<D> {
         });
     }
 
+    /// Whether pressure and the diffusion of density are all there is: no bulk friction, sliding rows, damping, or fluids.
+    fn is_plain(&self) -> bool {
+        self.normal_pressure.is_empty()
+            && self.uneven_pressure.is_empty()
+            && self.numerics.artificial_viscosity == 0.0
+            && !self.has_fluids
+    }
+
     /// alpha less what the material's own viscosity is worth: nu = alpha h c/(2 (D + 2)).
     fn missing_viscosity(&self, m: &Material) -> f64 {
         if m.artificial_viscosity == 0.0 || !m.is_newtonian() {
@@ -126,20 +140,16 @@ impl<const D: usize> Solver<D> {
         self.width * self.volume[i] / state.grains.mass[i]
     }
 
+    /// Row i; PLAIN: see [`Self::is_plain`].
     #[inline(always)]
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "one row of a sweep with what it reads"
-    )]
-    fn predict<L: Lanes>(
+    fn predict<L: Lanes, const PLAIN: bool>(
         &self,
         lanes: L,
         state: &State<D>,
         loads: &[Quad],
         dt: f64,
         block: &mut Block<D>,
-        i: usize,
-        row: usize,
+        (i, row): (usize, usize),
     ) -> Prediction<D> {
         let grains = &state.grains;
         let numerics = &self.numerics;
@@ -157,7 +167,9 @@ impl<const D: usize> Solver<D> {
         let head = 1.0 / (rho * self.gravity_norm * numerics.spacing).max(f64::MIN_POSITIVE);
         let (zero, half, one) = (splat(0.0), splat(0.5), splat(1.0));
         let (two, least) = (splat(2.0), splat(f64::MIN_POSITIVE));
-        let normal = (!self.normal_pressure.is_empty()).then_some(&self.normal_pressure[..]);
+        let normal =
+            (!PLAIN && !self.normal_pressure.is_empty()).then_some(&self.normal_pressure[..]);
+        let uneven = self.uneven_pressure.get(i).filter(|_| !PLAIN);
         let own_normal = normal.map_or(pressure, |n| n[i]);
         let mut force = [zero; D];
         let mut resistance = [[zero; D]; D];
@@ -184,7 +196,7 @@ impl<const D: usize> Solver<D> {
             for k in 0..D {
                 force[k] -= push * g_ij[k];
             }
-            if let Some(own) = self.uneven_pressure.get(i) {
+            if let Some(own) = uneven {
                 // Symmetric, and without a trace.
                 let mut last = zero;
                 for a in 0..D {
@@ -205,7 +217,7 @@ impl<const D: usize> Solver<D> {
                 }
             }
             let mean_rho = half * (splat(rho) + rho_j);
-            if damp > 0.0 || own_damping > 0.0 {
+            if !PLAIN && (damp > 0.0 || own_damping > 0.0) {
                 // [A] eq. 38: (v.x)/r^2 = (v.g) F/|g|^2, on approaching and receding pairs alike.
                 let mut along = zero;
                 for k in 0..D {
@@ -233,7 +245,7 @@ impl<const D: usize> Solver<D> {
                 }
                 let sum = splat(pressure) + pj;
                 let mut open = (gate * (splat(shear) + shear_j)).min(one);
-                if flows {
+                if !PLAIN && flows {
                     open = open.max(Four::gather(lanes, |m| self.flows[j[m] as usize]));
                 }
                 // The hydrostatic part is taken out where there is a hydrostatic load to speak of.

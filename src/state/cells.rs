@@ -65,24 +65,23 @@ impl Axis {
 
     /// First cell and number of cells that a sphere around `x` touches; the caller goes on modulo `cells`.
     fn reach(&self, x: f64, radius: f64) -> (usize, usize) {
+        // A little more than the radius: rounding must not lose a point at a cell's face.
+        let radius = radius + 1e-9 * self.edge + 4.0 * f64::EPSILON * (x.abs() + radius);
         let (from, to) = (
             (x - radius - self.lower) / self.edge,
             (x + radius - self.lower) / self.edge,
         );
         if self.period.is_some() {
             let (from, to) = (from.floor(), to.floor());
-            // One cell more on both sides costs little and makes rounding at cell faces harmless.
-            let count = (to - from) as usize + 3;
+            let count = (to - from) as usize + 1;
             if count >= self.cells {
                 return (0, self.cells);
             }
-            let start = (from - 1.0).rem_euclid(self.cells as f64) as usize;
+            let start = from.rem_euclid(self.cells as f64) as usize;
             return (start.min(self.cells - 1), count);
         }
-        let from = (from.max(0.0) as usize)
-            .saturating_sub(1)
-            .min(self.cells - 1);
-        let to = (to.max(0.0) as usize).saturating_add(1).min(self.cells - 1);
+        let cell = |c: f64| (c.max(0.0) as usize).min(self.cells - 1);
+        let (from, to) = (cell(from), cell(to));
         (from, to - from + 1)
     }
 
