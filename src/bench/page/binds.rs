@@ -54,8 +54,9 @@ fn binds(run: &SpeedRun) -> String {
          components of the gradient, one coefficient), about 0.9 kB a particle: 2,000 particles are 1.8 MB, about \
          what a core's own cache holds, 8,000 are 7 MB. From {small} to {large} particles the pair sweep, which writes them, takes {:.1} times as long for a \
          particle, the stress sweep, which reads most of them, {:.1} times, the force sweep {:.1} times; the roofline kernel, \
-         which keeps nothing for a pair, {kernel:.1} times. This, not arithmetic, makes the cost a particle grow, and it is why \
-         fewer bytes a pair would pay more than faster sums.\n\
+         which keeps nothing for a pair, {kernel:.1} times. This, not arithmetic, makes the cost a particle grow. \
+         Coefficients made anew from places (48 bytes a group instead of 80 in the stress sweep) cost more than they save at any size \
+         (docs/decisions/005-lanes-of-four.md).\n\
          - **In the cache, the pair sweep's own work.** It has about a third of its time outside the sums over pairs: finding \
          the neighbours within the support, sums across lanes, the correction of the gradient. Within them it gathers four \
          neighbours by transposing their records where the kernel broadcasts one, and keeps more running sums than there are \
