@@ -565,34 +565,10 @@ fn schema_is_json_and_a_reader_may_go_away() {
 #[test]
 fn a_run_says_that_its_sound_speed_is_too_low_for_what_flowed() {
     let desk = Desk::new();
-    let text = r#"
-name = "stream"
-title = "Water that glides over a floor without friction"
-dimension = 2
-[domain]
-lower = [0, -0.05]
-upper = [0.2, 0.2]
-periodic = ["x"]
-[numerics]
-spacing = 0.01
-sound_speed = 10
-[materials.water]
-law = "fluid"
-preset = "water"
-[bodies.stream]
-material = "water"
-box = { lower = [0, 0], upper = [0.2, 0.1] }
-velocity = [SPEED, 0]
-[walls.floor]
-polyline = [[0, 0], [0.2, 0]]
-slip = "free_slip"
-[run]
-step = 0.01
-until = 0.02
-"#;
+    let text = std::fs::read_to_string(scene("stream")).unwrap();
     for (speed, said) in [("1.9", false), ("2.1", true)] {
-        let scene = desk.path("stream.toml");
-        std::fs::write(&scene, text.replace("SPEED", speed)).unwrap();
+        let text = text.replace("velocity = [2.1, 0]", &format!("velocity = [{speed}, 0]"));
+        std::fs::write(desk.path("stream.toml"), text).unwrap();
         let out = desk.call(&["run", "stream.toml", "--out", speed]);
         assert_eq!(out.status.code(), Some(0), "{}", stderr(&out));
         let shown = String::from_utf8_lossy(&out.stdout).into_owned() + &stderr(&out);

@@ -3,39 +3,14 @@
 use super::Unit;
 use sandgate::scene;
 
+/// Sound speed of all scenes here [m/s].
 const SOUND: f64 = 10.0;
 
 /// Water that glides at `water` over a belt that runs at `belt` [m/s]; its share of fast mass at the end.
 fn over_a_belt(water: f64, belt: f64) -> f64 {
-    let text = format!(
-        r#"
-name = "stream"
-title = "A stream over a belt without friction"
-dimension = 2
-[domain]
-lower = [0, -0.05]
-upper = [0.2, 0.2]
-periodic = ["x"]
-[numerics]
-spacing = 0.01
-sound_speed = {SOUND}
-[materials.water]
-law = "fluid"
-density = 1000
-consistency = 1e-3
-[bodies.stream]
-material = "water"
-box = {{ lower = [0, 0], upper = [0.2, 0.1] }}
-velocity = [{water}, 0]
-[walls.belt]
-polyline = [[0, 0], [0.2, 0]]
-slip = "free_slip"
-velocity = [{belt}, 0]
-[run]
-step = 0.01
-until = 0.1
-"#
-    );
+    let text = include_str!("../../scenes/stream.toml")
+        .replace("velocity = [0, 0]", &format!("velocity = [{belt}, 0]"))
+        .replace("velocity = [2.1, 0]", &format!("velocity = [{water}, 0]"));
     let mut unit = Unit::new(&scene::parse("stream.toml", &text).unwrap());
     unit.run_to(0.02);
     unit.get("validity.share_fast")
