@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 /// First bytes of every saved state.
 const MARK: &[u8; 8] = b"SANDGATE";
 /// Counts up whenever the payload's layout changes; other versions are refused, never guessed.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 /// Bytes before the checksum.
 const PREFIX: usize = 8 + 4 + 32 + 8;
 /// Bytes before the payload.

@@ -127,6 +127,7 @@ fn particle_mass(scene: &Scene, place: &Point, density: f64, cell: f64) -> f64 {
 fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
     let mut random = Random::new(scene.numerics.seed);
     let mut grains = Grains {
+        implicit: scene.numerics.scheme == Scheme::Implicit,
         exact_yield: scene.keeps_stress(),
         wall_friction: scene.has_wall_friction(),
         saturated: scene.has_pore_pressure(),
@@ -208,6 +209,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
         steps: 0,
         iterations: 0,
         step_size: 0.0,
+        trend: 0.0,
         rest: RestState::default(),
         random,
     })

@@ -1,5 +1,5 @@
 //! The implicit viscous solve (docs/theory.md, E9, E12): (M - dt F) v = M v* by conjugate gradients with D x D Jacobi
-//! blocks, started from the last step's change. With the exact yield it is solved a few times a step, each time with
+//! blocks, started from what the last steps let expect (`guess`). With the exact yield it is solved a few times a step, each time with
 //! the stress of the last projection beside it (`plastic`).
 
 use crate::math::{Tensor, Vector, apply, dot, scale, sub};
@@ -97,11 +97,7 @@ impl<const D: usize> Solver<D> {
         dt: f64,
         work: &mut Viscous<D>,
     ) -> Result<u32, SolverError> {
-        let acceleration = &state.grains.viscous_acceleration;
-        self.workers.each(&mut work.velocity, |i, v| {
-            let (start, a) = (&self.prediction[i].velocity, &acceleration[i]);
-            *v = std::array::from_fn(|k| start[k] + dt * a[k]);
-        });
+        self.guess(state, dt, &mut work.velocity);
         self.stress(&work.velocity, &mut work.current, true, &[]);
         self.jacobi_blocks(state, dt, &mut work.jacobi);
         self.grip_blocks(dt, &mut work.jacobi);

@@ -14,6 +14,7 @@ mod error;
 mod explicit;
 mod fluid_row;
 mod grid;
+mod guess;
 mod implicit;
 mod kinematics;
 mod lean;

@@ -30,15 +30,14 @@ impl<const D: usize> Solver<D> {
             }
             []
         });
-        let (a, rho) = (&mut grains.viscous_acceleration, &mut grains.density);
+        self.note_accelerations(state, dt);
+        let grains = &mut state.grains;
         let divergence = &self.shift_divergence;
-        self.workers.both(a, rho, |i, a, rho| {
-            *a = std::array::from_fn(|k| (new[i][k] - prediction[i].velocity[k]) / dt);
+        self.workers.each(&mut grains.density, |i, rho| {
             *rho += dt * prediction[i].diffusion;
             if let Some(divergence) = divergence.get(i) {
                 *rho *= (-dt * divergence).exp();
             }
-            []
         });
         if self.geometry.is_axisymmetric() {
             for i in 0..grains.len() {

@@ -313,6 +313,7 @@ fn sand<const D: usize>(geometry: Geometry, side: usize, jitter: f64) -> (Plan<D
     let material = Material::sand_04();
     let mut random = Random::new(11);
     let mut grains = Grains {
+        implicit: true,
         exact_yield: true,
         ..Grains::default()
     };
@@ -360,6 +361,7 @@ fn sand<const D: usize>(geometry: Geometry, side: usize, jitter: f64) -> (Plan<D
         steps: 0,
         iterations: 0,
         step_size: 0.0,
+        trend: 0.0,
         rest: RestState::default(),
         random,
     };

@@ -124,10 +124,17 @@ impl<const D: usize> Solver<D> {
                     }
                 }
                 o.diffusion += strength * self.plain_diffusion(state, i, pair);
+                let share = numerics.pair_viscosity_share;
+                let stress = (1.0 - share) * self.pair_viscosity[j];
                 let both = self.pair_viscosity[i] + self.pair_viscosity[j];
+                let mut twice = (1.0 - 2.0 / D as f64) * stress;
                 if both > 0.0 {
                     let mean = 2.0 * self.pair_viscosity[i] * self.pair_viscosity[j] / both;
-                    add_outer(&mut o.resistance, mean * pair.c, &pair.g, &pair.g);
+                    twice += 2.0 * share * mean * pair.c;
+                }
+                add_outer(&mut o.resistance, twice, &pair.g, &pair.g);
+                for k in 0..D {
+                    o.resistance[k][k] += stress * dot(&pair.g, &pair.g);
                 }
             }
             if self.geometry.is_axisymmetric() {

@@ -17,7 +17,8 @@ pub(super) struct Prediction<const D: usize> {
     pub(super) velocity: Vector<D>,
     /// d rho/dt by diffusion [kg/(m^3 s)].
     pub(super) diffusion: f64,
-    /// sum_j eta_ij c g g^T: the pair form's resistance to moving alone, walls not counted [Pa s/m^2].
+    /// How viscosity resists to a particle that moves alone, walls not counted (docs/theory.md, E17) [Pa s/m^2]:
+    /// sum_j 2 s_p eta_ij c g g^T + (1 - s_p) eta_j (|g|^2 I + (1 - 2/D) g g^T).
     pub(super) resistance: Tensor<D>,
 }
 
@@ -167,6 +168,9 @@ impl<const D: usize> Solver<D> {
         let head = 1.0 / (rho * self.gravity_norm * numerics.spacing).max(f64::MIN_POSITIVE);
         let (zero, half, one) = (splat(0.0), splat(0.5), splat(1.0));
         let (two, least) = (splat(2.0), splat(f64::MIN_POSITIVE));
+        let share = numerics.pair_viscosity_share;
+        let (by_pairs, by_stress) = (splat(2.0 * share), splat(1.0 - share));
+        let along = splat(1.0 - 2.0 / D as f64);
         let normal =
             (!PLAIN && !self.normal_pressure.is_empty()).then_some(&self.normal_pressure[..]);
         let uneven = self.uneven_pressure.get(i).filter(|_| !PLAIN);
@@ -189,6 +193,10 @@ impl<const D: usize> Solver<D> {
             let mut g_ij = [zero; D];
             for k in 0..D {
                 g_ij[k] = Four::load(lanes, &g[k]);
+            }
+            let mut g2 = zero;
+            for g in g_ij {
+                g2 += g * g;
             }
             let geometric = Four::load(lanes, c);
             let push = normal.map_or(pj, |n| Four::gather(lanes, |m| n[j[m] as usize]));
@@ -238,9 +246,8 @@ impl<const D: usize> Solver<D> {
                 }
             }
             if diffuse {
-                let (mut g2, mut down) = (zero, zero);
+                let mut down = zero;
                 for k in 0..D {
-                    g2 += g_ij[k] * g_ij[k];
                     down += splat(self.gravity[k]) * g_ij[k];
                 }
                 let sum = splat(pressure) + pj;
@@ -257,11 +264,17 @@ impl<const D: usize> Solver<D> {
             // Harmonic mean of the viscosities; 0 if both are.
             let both = (splat(eta) + eta_j).max(least);
             let weighted = geometric * (two * splat(eta) * eta_j).over(both);
+            let stress = by_stress * eta_j;
+            let mut twice = by_pairs * weighted;
+            if D > 2 {
+                twice += along * stress;
+            }
             for a in 0..D {
-                let cg = weighted * g_ij[a];
+                let cg = twice * g_ij[a];
                 for b in a..D {
                     resistance[a][b] += cg * g_ij[b];
                 }
+                resistance[a][a] += stress * g2;
             }
             *c = weighted.store();
         }

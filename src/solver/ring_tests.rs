@@ -44,7 +44,10 @@ fn column(
     let material = Material::sand_04();
     let density = 1.01 * material.rest_density();
     let mut random = Random::new(7);
-    let mut grains = Grains::default();
+    let mut grains = Grains {
+        implicit: true,
+        ..Grains::default()
+    };
     for b in 0..HEIGHT {
         for a in 0..RADIUS {
             let mut x = [(a as f64 + 0.5) * DP, (b as f64 + 0.5) * DP];
@@ -99,6 +102,7 @@ fn column(
         steps: 0,
         iterations: 0,
         step_size: 0.0,
+        trend: 0.0,
         rest: crate::state::RestState::default(),
         random,
     };

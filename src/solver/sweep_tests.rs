@@ -62,6 +62,7 @@ fn disordered_on<const D: usize>(
 ) -> (Solver<D>, State<D>) {
     let mut random = Random::new(11);
     let mut grains = Grains {
+        implicit: true,
         exact_yield: true,
         ..Grains::default()
     };
@@ -120,6 +121,7 @@ fn disordered_on<const D: usize>(
         steps: 0,
         iterations: 0,
         step_size: 0.0,
+        trend: 0.0,
         rest: RestState::default(),
         random,
     };

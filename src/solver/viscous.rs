@@ -189,8 +189,10 @@ impl<const D: usize> Solver<D> {
         sums
     }
 
-    /// Inverse Jacobi blocks: m I + dt V_i sum c g g^T, the pair form with the whole viscosity.
+    /// Inverse Jacobi blocks (docs/theory.md, E17): the matrix's own, but for the pair form's share, which counts twice, and what
+    /// the stress of the row itself adds, which is left out.
     pub(super) fn jacobi_blocks(&self, state: &State<D>, dt: f64, jacobi: &mut [Tensor<D>]) {
+        let share = self.numerics.pair_viscosity_share;
         self.workers
             .blocks_read(&self.lists.blocks, jacobi, |block, first, out| {
                 for (row, b) in out.iter_mut().enumerate() {
@@ -200,7 +202,7 @@ impl<const D: usize> Solver<D> {
                     let b = &mut out[w.row as usize];
                     for r in 0..D {
                         for c in 0..D {
-                            b[r][c] += 2.0 * w.c[r][c];
+                            b[r][c] += 4.0 * share * w.c[r][c];
                         }
                     }
                 }

@@ -7,6 +7,8 @@ use crate::math::{Tensor, Vector};
 /// The particles of a scene. All arrays have the same length.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Grains<const D: usize> {
+    /// Whether viscosity is implicit: `viscous_change` is kept.
+    pub implicit: bool,
     /// Whether the exact yield is on: `stress` and `plastic_rate` are kept.
     pub exact_yield: bool,
     /// Whether walls have Coulomb friction: `wall_traction` and `wall_slip` are kept.
@@ -32,6 +34,9 @@ pub struct Grains<const D: usize> {
     /// acceleration at the last half step, from which the next is predicted [m/s^2].
     #[serde(with = "flat")]
     pub viscous_acceleration: Vec<Vector<D>>,
+    /// How it changed over the last step [m/s^2]; empty where viscosity is explicit.
+    #[serde(with = "flat")]
+    pub viscous_change: Vec<Vector<D>>,
     /// Stress multiplier lambda of the exact yield [Pa]; empty without it.
     #[serde(with = "flat_tensors")]
     pub stress: Vec<Tensor<D>>,
@@ -66,6 +71,7 @@ macro_rules! for_each_field {
         $f(&mut $self.mass, $($extra)*);
         $f(&mut $self.relaxed_shear, $($extra)*);
         $f(&mut $self.viscous_acceleration, $($extra)*);
+        $f(&mut $self.viscous_change, $($extra)*);
         $f(&mut $self.stress, $($extra)*);
         $f(&mut $self.plastic_rate, $($extra)*);
         $f(&mut $self.wall_traction, $($extra)*);
@@ -108,6 +114,9 @@ impl<const D: usize> Grains<D> {
         self.mass.push(mass);
         self.relaxed_shear.push(0.0);
         self.viscous_acceleration.push([0.0; D]);
+        if self.implicit {
+            self.viscous_change.push([0.0; D]);
+        }
         if self.exact_yield {
             self.stress.push([[0.0; D]; D]);
             self.plastic_rate.push([[0.0; D]; D]);
@@ -142,6 +151,7 @@ impl<const D: usize> Grains<D> {
             &mut self.position,
             &mut self.velocity,
             &mut self.viscous_acceleration,
+            &mut self.viscous_change,
             &mut self.wall_traction,
             &mut self.wall_slip,
         ];
@@ -176,6 +186,7 @@ impl<const D: usize> Grains<D> {
         ];
         let kept = |option: bool| [if option { n } else { 0 }; 2];
         lengths.iter().all(|&l| l == n)
+            && self.viscous_change.len() == kept(self.implicit)[0]
             && [self.stress.len(), self.plastic_rate.len()] == kept(self.exact_yield)
             && [self.wall_traction.len(), self.wall_slip.len()] == kept(self.wall_friction)
             && self.pore_pressure.len() == kept(self.saturated)[0]

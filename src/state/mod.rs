@@ -42,6 +42,8 @@ pub struct State<const D: usize> {
     pub iterations: u64,
     /// Last internal step [s].
     pub step_size: f64,
+    /// Share of its last change by which the viscous acceleration is expected to change in the next step [1].
+    pub trend: f64,
     /// Whether the scene sleeps, or how near it is to it.
     pub rest: RestState<D>,
     /// Generator of inflow jitter.

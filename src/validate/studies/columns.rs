@@ -17,7 +17,7 @@ pub(super) const STUDY: Study = Study {
     about: "The six columns of Table 3 of Minatti and Paris [A] (Appl. Math. Modelling 39 (2015) 363-376): sand of 0.32 mm, \
 half-width r0 = 97.2 mm, height H0 = a r0, at [A]'s particle spacing, planar, released at t = 0 on a floor of the same \
 roughness. The default scheme; five seeds of the jittered start each, of which means and spread are taken (spread: standard \
-deviation over mean), and three at half that spacing.\n\n\
+deviation over mean), at that spacing and at half of it, and one at a quarter.\n\n\
 Run-out is (r - r0)/r0 of the front, the mean of both sides, at twice the stopping time 3 sqrt(H0/g) unless said otherwise. \
 It is judged against the published *planar* law, (1.2 to 1.8) a below a = 2.3 and (1.9 to 2.3) a^(2/3) above (channel \
 experiments: Lube et al. 2005, Phys. Rev. E 72, 041301; Lajeunesse et al. 2005, Phys. Fluids 17, 103302; the band is what \

@@ -2,11 +2,11 @@
 
 mod quarter;
 
-use super::convergence::{FINE_SEEDS, HALF};
+use super::convergence::{FINE_SEEDS, HALF, QUARTER};
 use super::{COLUMNS, Column, R0, column, figures, run_out, scene};
 use crate::validate::statistics::{mean, spread};
 use crate::validate::template::{Template, point, points, rectangle};
-use crate::validate::{Effort, Member, Metric, Report, Results, Rule, Study};
+use crate::validate::{Effort, Member, Metric, Recording, Report, Results, Rule, Study};
 
 /// The study.
 pub(in crate::validate::studies) const STUDY: Study = Study {
@@ -14,7 +14,7 @@ pub(in crate::validate::studies) const STUDY: Study = Study {
     title: "Collapse of round sand columns (axisymmetric) against Lube's law",
     about: "The six columns of Table 3 of Minatti and Paris [A] and two taller ones, a = 5 and 10, as the rings about their axis \
 that they are in experiments (`dimension = \"axisymmetric\"`): sand of 0.32 mm, r0 = 97.2 mm, [A]'s particle spacing, the \
-default scheme, five seeds of the jittered start; [A]'s six also at half that spacing, three seeds.\n\n\
+default scheme, five seeds of the jittered start; [A]'s six also at half that spacing, and one seed at a quarter.\n\n\
 Run-out is (r - r0)/r0 of the front at twice the stopping time 3 sqrt(H0/g), against 1.24 a below a = 1.7 and 1.6 sqrt(a) above \
 (Lube, Huppert, Sparks and Hallworth 2004, J. Fluid Mech. 508, 175-199; experiments scatter by some 10 %).
 
@@ -35,6 +35,8 @@ const SERIES: [&str; 3] = [
 
 /// Names what is computed at half the spacing.
 const FINE: &str = "fine_";
+/// Names what is computed at a quarter of it.
+const FINEST: &str = "finest_";
 
 fn all() -> impl Iterator<Item = &'static Column> {
     COLUMNS.iter().chain(&TALL)
@@ -50,14 +52,19 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
         let name = column.name(kind, seed);
         Ok(Member::new(name, text, &SERIES, column.pictures(seed)))
     };
-    let [dp, half] = [[1.0, 2.5], HALF].map(|[full, quick]| effort.pick(full, quick));
+    let [dp, half, quarter] =
+        [[1.0, 2.5], HALF, QUARTER].map(|[full, quick]| effort.pick(full, quick));
     let coarse = all()
         .flat_map(|column| (1..=effort.pick(5, 2)).map(move |seed| member(column, "", dp, seed)));
     let fine = COLUMNS.iter().flat_map(|column| {
         let seeds = 1..=effort.pick(FINE_SEEDS[0], FINE_SEEDS[1]);
         seeds.map(move |seed| member(column, FINE, half, seed))
     });
-    coarse.chain(fine).chain(quarter::members(effort)).collect()
+    let finest = COLUMNS
+        .iter()
+        .map(|column| member(column, FINEST, quarter, 1));
+    let rest = finest.chain(quarter::members(effort));
+    coarse.chain(fine).chain(rest).collect()
 }
 
 /// A round column as rings.
@@ -89,6 +96,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
     }
     for column in &COLUMNS {
         report.metrics.extend(judge(results, column, FINE));
+        report.metrics.extend(changes(results, column));
     }
     let laws = all().map(|c| {
         let law = c.axisymmetric();
@@ -101,6 +109,44 @@ fn analyse(results: &Results) -> Result<Report, String> {
     Ok(report)
 }
 
+/// Finished runs of a kind, all seeds.
+fn recordings<'a>(results: &'a Results, column: &Column, kind: &str) -> Vec<&'a Recording> {
+    let name = column.name(kind, 0);
+    let prefix = name.trim_end_matches('0');
+    let all = results.all();
+    all.filter(|(name, recording)| name.starts_with(prefix) && recording.is_finished())
+        .map(|(_, recording)| recording)
+        .collect()
+}
+
+/// Their run-outs.
+fn run_outs(results: &Results, column: &Column, kind: &str) -> Vec<f64> {
+    let found = recordings(results, column, kind).into_iter();
+    found
+        .filter_map(|r| run_out(r, column.twice_stopping()))
+        .collect()
+}
+
+/// What finer spacings change.
+fn changes(results: &Results, column: &Column) -> Vec<Metric> {
+    let own = |kind: &str| mean(&run_outs(results, column, kind));
+    let change = |from: &str, coarse: &str, fine: &str| {
+        Metric::new(
+            format!(
+                "a = {:.2}: change of run-out from {from}, each front at a depth of its own spacing",
+                column.aspect
+            ),
+            own(coarse).zip(own(fine)).map(|(c, f)| (f / c - 1.0).abs()),
+            Rule::AtMost(0.03),
+            "resolution is no part of the result; one seed at dp/4",
+        )
+    };
+    vec![
+        change("dp to dp/2", "", FINE),
+        change("dp/2 to dp/4", FINE, FINEST),
+    ]
+}
+
 /// Run-outs, spread and height of runs of a kind.
 fn judge(results: &Results, column: &Column, kind: &str) -> Vec<Metric> {
     let spacing = if kind == FINE {
@@ -110,11 +156,8 @@ fn judge(results: &Results, column: &Column, kind: &str) -> Vec<Metric> {
     };
     let label = format!("a = {:.2}{spacing}", column.aspect);
     let a = column.aspect;
-    let prefix = column.name(kind, 0);
-    let found = results.starting(prefix.trim_end_matches('0'));
-    let found: Vec<_> = found.map(|(_, recording)| recording).collect();
-    let end = column.twice_stopping();
-    let run_outs: Vec<f64> = found.iter().filter_map(|r| run_out(r, end)).collect();
+    let found = recordings(results, column, kind);
+    let run_outs = run_outs(results, column, kind);
     let heights: Vec<f64> = found
         .iter()
         .filter_map(|r| Some(r.last("gauge.depth_centre.depth")? / R0))
