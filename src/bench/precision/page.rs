@@ -14,7 +14,7 @@ pub const MADE: &str =
 /// Why the defaults are not the front of each study.
 const WHY: &str = "\
 \nThe defaults are the best choice for all studies at once, and for none by itself. A `solver_tolerance` of 1e-2 is \
-cheaper, and as good where flow is steady; where material starts and stops it has not been judged by seeds. `courant` = 0.9 costs \
+cheaper and as good in Bagnold's flow, and not good enough in the channel. `courant` = 0.9 costs \
 little accuracy and less time; scenes may ask for it (docs/decisions/008-courant.md says why it is not the default). Without density diffusion \
 Bagnold's flow is as good, and what should be hydrostatic is not.\n";
 
