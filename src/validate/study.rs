@@ -125,10 +125,10 @@ impl Results {
     }
 
     /// Members whose names begin so and that ran to their end, in order of name.
-    pub fn starting<'a>(
+    pub fn starting<'a, 'p>(
         &'a self,
-        prefix: &'a str,
-    ) -> impl Iterator<Item = (&'a str, &'a Recording)> {
+        prefix: &'p str,
+    ) -> impl Iterator<Item = (&'a str, &'a Recording)> + use<'a, 'p> {
         self.all()
             .filter(move |(name, r)| name.starts_with(prefix) && r.is_finished())
     }

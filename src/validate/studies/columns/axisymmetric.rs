@@ -111,12 +111,9 @@ fn analyse(results: &Results) -> Result<Report, String> {
 
 /// Finished runs of a kind, all seeds.
 fn recordings<'a>(results: &'a Results, column: &Column, kind: &str) -> Vec<&'a Recording> {
-    let name = column.name(kind, 0);
-    let prefix = name.trim_end_matches('0');
-    let all = results.all();
-    all.filter(|(name, recording)| name.starts_with(prefix) && recording.is_finished())
-        .map(|(_, recording)| recording)
-        .collect()
+    let prefix = column.name(kind, 0);
+    let found = results.starting(prefix.trim_end_matches('0'));
+    found.map(|(_, recording)| recording).collect()
 }
 
 /// Their run-outs.
