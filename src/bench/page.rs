@@ -34,7 +34,7 @@ impl Demand {
     pub fn verdict(&self) -> &'static str {
         match self.verdict {
             Verdict::Met => "met",
-            Verdict::FallsShort => "**not met**",
+            Verdict::FallsShort | Verdict::Model => "**not met**",
             Verdict::Reported => "for comparison",
             Verdict::NoResult => "not measured",
         }

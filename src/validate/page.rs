@@ -25,6 +25,9 @@ pub struct Summary {
     pub quick: bool,
     /// Metrics met.
     pub met: usize,
+    /// Metrics whose shortfall is the model's.
+    #[serde(default)]
+    pub model: usize,
     /// Metrics that fall short.
     pub short: usize,
     /// Metrics without a result.
@@ -125,6 +128,7 @@ impl Summary {
         Self {
             quick: found.effort == Effort::Quick,
             met: report.count(Verdict::Met),
+            model: report.count(Verdict::Model),
             short: report.count(Verdict::FallsShort),
             missing: report.count(Verdict::NoResult),
             members: (recordings.len(), found.members.len()),
@@ -145,20 +149,25 @@ impl Summary {
     /// The verdict in words.
     #[must_use]
     pub fn verdict(&self) -> String {
-        let judged = self.met + self.short + self.missing;
+        let judged = self.met + self.model + self.short + self.missing;
         if self.quick {
             return format!(
                 "quick runs, not judged ({} of {judged} inside their tolerance)",
                 self.met
             );
         }
+        let also = |count: usize, what: &str| match count {
+            0 => String::new(),
+            _ => format!(", {count} {what}"),
+        };
+        let model = also(self.model, "the model's");
         match (self.short, self.missing) {
-            (0, 0) if judged > 0 => format!("met ({judged} of {judged})"),
+            (0, 0) if judged > 0 => format!("met ({judged} of {judged}{model})"),
             (0, 0) => "reported only".to_owned(),
-            (0, missing) => format!("incomplete ({missing} of {judged} without a result)"),
-            (short, 0) => format!("falls short ({short} of {judged})"),
+            (0, missing) => format!("incomplete ({missing} of {judged} without a result{model})"),
             (short, missing) => {
-                format!("falls short ({short} of {judged}, {missing} without a result)")
+                let missing = also(missing, "without a result");
+                format!("falls short ({short} of {judged}{missing}{model})")
             }
         }
     }
@@ -257,6 +266,9 @@ pub fn index(folder: &Path, studies: &[Study]) -> String {
          `sandgate validate`, from runs of the component; none is typed by hand. What falls short stands here as such.\n\n\
          {}\n\
          - **met**: inside the tolerance that stands, with its reason, beside the number.\n\
+         - **the model's**: outside of it, but not by the scheme: spacing, start, sound speed and yield iterations, where\n  \
+         there are any, each changed on its own, together change the number by less than 3 %. What is left is how the model\n  \
+         differs from the source.\n\
          - **falls short**: outside of it.\n\
          - **reported**: not judged: another model, a law for another geometry, or a figure for information.\n\n\
          `sources` is a hash of all source files that can change a result, also in the program that ran them: runs of\n\

@@ -44,11 +44,17 @@ impl Rule {
     }
 }
 
+/// Changes below which, summed, what is left outside a tolerance is the model's [1].
+pub const MODEL: f64 = 0.03;
+
 /// What became of a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Inside the tolerance.
     Met,
+    /// Outside of it, and shown to be the difference between the model and the source: what was chosen to compute it changes
+    /// it by less than [`MODEL`].
+    Model,
     /// Outside of it.
     FallsShort,
     /// Not judged.
@@ -70,6 +76,9 @@ pub struct Metric {
     pub rule: Rule,
     /// Where the reference comes from and why the tolerance is what it is.
     pub source: String,
+    /// By how much spacing, start, sound speed and what else is chosen to compute it change it, summed [1]; `None` where that
+    /// was not measured.
+    pub changes: Option<f64>,
 }
 
 impl Metric {
@@ -87,6 +96,7 @@ impl Metric {
             unit: "",
             rule,
             source: source.into(),
+            changes: None,
         }
     }
 
@@ -94,6 +104,13 @@ impl Metric {
     #[must_use]
     pub fn unit(mut self, unit: &'static str) -> Self {
         self.unit = unit;
+        self
+    }
+
+    /// The same with what each choice changes [1]; nothing unless all of them are there.
+    #[must_use]
+    pub fn changed_by(mut self, changes: impl IntoIterator<Item = Option<f64>>) -> Self {
+        self.changes = changes.into_iter().map(|c| c.map(f64::abs)).sum();
         self
     }
 
@@ -106,6 +123,9 @@ impl Metric {
         match self.rule.allows(value) {
             None => Verdict::Reported,
             Some(true) => Verdict::Met,
+            Some(false) if value.is_finite() && self.changes.is_some_and(|c| c < MODEL) => {
+                Verdict::Model
+            }
             Some(false) => Verdict::FallsShort,
         }
     }
@@ -206,6 +226,24 @@ mod tests {
             Metric::new("m", None, Rule::AtMost(1.0), "").verdict(),
             Verdict::NoResult
         );
+    }
+
+    #[test]
+    fn what_is_left_is_the_models_where_all_choices_together_change_little() {
+        let off = |changes: &[Option<f64>]| {
+            Metric::new("m", Some(2.0), Rule::AtMost(1.0), "")
+                .changed_by(changes.iter().copied())
+                .verdict()
+        };
+        assert_eq!(off(&[Some(0.014), Some(-0.015)]), Verdict::Model);
+        assert_eq!(off(&[Some(0.016), Some(-0.015)]), Verdict::FallsShort);
+        assert_eq!(off(&[Some(0.01), None]), Verdict::FallsShort);
+        assert_eq!(off(&[Some(f64::NAN)]), Verdict::FallsShort);
+        let inside = Metric::new("m", Some(0.5), Rule::AtMost(1.0), "").changed_by([Some(0.0)]);
+        assert_eq!(inside.verdict(), Verdict::Met);
+        let broken =
+            Metric::new("m", Some(f64::NAN), Rule::AtMost(1.0), "").changed_by([Some(0.0)]);
+        assert_eq!(broken.verdict(), Verdict::FallsShort);
     }
 
     #[test]

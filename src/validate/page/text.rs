@@ -67,7 +67,7 @@ fn metrics(metrics: &[Metric]) -> String {
                 format!("{:+.1} %", 100.0 * (v / r - 1.0))
             }),
             allowed(&m.rule),
-            word(m.verdict()).to_owned(),
+            word(m),
             m.source.clone(),
         ]
     };
@@ -98,12 +98,16 @@ fn allowed(rule: &Rule) -> String {
     }
 }
 
-fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Met => "met",
-        Verdict::FallsShort => "**falls short**",
-        Verdict::Reported => "reported",
-        Verdict::NoResult => "**no result**",
+fn word(metric: &Metric) -> String {
+    let changes = metric.changes.map_or(String::new(), |c| {
+        format!("; the scheme changes it by {} %", number(100.0 * c))
+    });
+    match metric.verdict() {
+        Verdict::Met => "met".to_owned(),
+        Verdict::Model => format!("the model's{changes}"),
+        Verdict::FallsShort => format!("**falls short**{changes}"),
+        Verdict::Reported => "reported".to_owned(),
+        Verdict::NoResult => "**no result**".to_owned(),
     }
 }
 

@@ -1,10 +1,11 @@
 //! `contact_dynamics`: planar columns against discs computed one by one.
 
+use super::choices::{self, Choice};
 use super::columns::{SERIES, front, scene};
 use crate::validate::chart::{Chart, Curve, Look};
 use crate::validate::csv;
 use crate::validate::statistics::{interpolate, mean};
-use crate::validate::template::point;
+use crate::validate::template::{Template, point};
 use crate::validate::{Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study};
 
 /// The study.
@@ -60,14 +61,18 @@ const COLUMNS: [Discs; 2] = [
     },
 ];
 
+/// The column at which the scheme's choices are changed: the one whose profiles leave the band.
+const CHECKED: &Discs = &COLUMNS[0];
+
 impl Discs {
-    fn member(&self, seed: u32, effort: Effort) -> Result<Member, String> {
+    /// The column with so many spacings over a grain.
+    fn scene(&self, spacings: f64, seed: u32, effort: Effort) -> Result<Template, String> {
         let grain = HEIGHT / self.grains;
-        let spacing = effort.pick(1.0, 3.0) * grain;
+        let spacing = spacings * grain;
         let fall = fall();
         let beyond = self.places() as f64 * self.place * HEIGHT;
         let size = [self.half_width * HEIGHT, HEIGHT];
-        let text = scene(size, spacing, self.reach * HEIGHT)?
+        Ok(scene(size, spacing, self.reach * HEIGHT)?
             .with("materials.sand.static_friction_angle", 0.32_f64.atan())
             .with("materials.sand.dynamic_friction_angle", 0.60_f64.atan())
             .with(
@@ -81,15 +86,26 @@ impl Discs {
             .with("gauges.surface.to", point(beyond, 0.0))
             .with("gauges.surface.count", 2 * self.places() as i64 + 1)
             .with("run.step", fall / 10.0)
-            .with("run.until", effort.pick(8.0, 6.0) * fall)
-            .text()?;
-        let series = [&SERIES[..], &["gauge.surface.depth"]].concat();
-        Ok(Member::new(
-            format!("{}_seed{seed}", self.name),
-            text,
-            &series,
-            Vec::new(),
-        ))
+            .with("run.until", effort.pick(8.0, 6.0) * fall))
+    }
+
+    fn run(&self, seed: u32) -> String {
+        format!("{}_seed{seed}", self.name)
+    }
+
+    fn check(&self, choice: Choice) -> String {
+        format!("check_{}_{}", self.name, choice.name())
+    }
+
+    /// Mean of |h - h of the first seed| over H0 by each choice, over the places at which either is above 0.
+    fn changes(&self, results: &Results, time: f64) -> [Option<f64>; 4] {
+        let profile = |name: String| self.profile(results.finished(&name)?, time);
+        let base = profile(self.run(1));
+        Choice::ALL.map(|choice| {
+            let depths = base.as_ref()?.iter().enumerate();
+            let base: Profile = depths.map(|(k, h)| (k as f64 * self.place, *h)).collect();
+            profile_error(&profile(self.check(choice))?, self.place, &base)
+        })
     }
 
     /// Places of the profile on either side of the middle.
@@ -111,11 +127,28 @@ fn fall() -> f64 {
 }
 
 fn members(effort: Effort) -> Result<Vec<Member>, String> {
-    let seeds = 1..=effort.pick(3, 1);
-    let all = COLUMNS
-        .iter()
-        .flat_map(|c| seeds.clone().map(move |seed| c.member(seed, effort)));
-    all.collect()
+    let series = [&SERIES[..], &["gauge.surface.depth"]].concat();
+    let member = |name: String, scene: Template| {
+        scene
+            .text()
+            .map(|text| Member::new(name, text, &series, Vec::new()))
+    };
+    let spacings = effort.pick(1.0, 3.0);
+    let mut members = Vec::new();
+    for column in &COLUMNS {
+        for seed in 1..=effort.pick(3, 1) {
+            members.push(member(
+                column.run(seed),
+                column.scene(spacings, seed, effort)?,
+            )?);
+        }
+    }
+    for choice in Choice::ALL {
+        let scene = CHECKED.scene(spacings / choice.refinement(), 1, effort)?;
+        let changed = choice.change(scene, (GRAVITY * HEIGHT).sqrt());
+        members.push(member(CHECKED.check(choice), changed)?);
+    }
+    Ok(members)
 }
 
 /// Depths of the discs at one time: (x, h), both over H0.
@@ -164,6 +197,14 @@ fn analyse(results: &Results) -> Result<Report, String> {
             .extend(judge_fronts(results, column, &fronts));
         report.figures.push(figure(results, column, &profiles)?);
     }
+    let changes = TIMES.map(|time| {
+        let what = format!("a = {}, t = {time} sqrt(H0/g)", CHECKED.aspect);
+        (what, CHECKED.changes(results, time))
+    });
+    report.tables.push(choices::table(
+        "Mean change of the profile by each choice of the scheme, over H0".to_owned(),
+        &changes,
+    ));
     report.figures.push(front_figure(results, &fronts)?);
     if profiles.is_empty() {
         report.notes.push(format!(
@@ -187,7 +228,7 @@ fn judge_profiles(results: &Results, column: &Discs, rows: &[[f64; 4]]) -> Vec<M
         mean(&errors.collect::<Vec<_>>())
     };
     let judge = |time: f64| {
-        Metric::new(
+        let metric = Metric::new(
             format!(
                 "a = {}: profile at t = {time} sqrt(H0/g), mean error over H0",
                 column.aspect
@@ -195,7 +236,12 @@ fn judge_profiles(results: &Results, column: &Discs, rows: &[[f64; 4]]) -> Vec<M
             error(time),
             Rule::AtMost(0.03),
             "Staron and Hinch, read from a figure; 0.03 is one grain of the low column and twice the scatter of their surface",
-        )
+        );
+        if column.name == CHECKED.name {
+            metric.changed_by(column.changes(results, time))
+        } else {
+            metric
+        }
     };
     TIMES.into_iter().map(judge).collect()
 }

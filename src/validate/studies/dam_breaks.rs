@@ -1,6 +1,8 @@
 //! `dam_breaks`: clear water over a dry and a wet bed, against the shallow-water solutions of Ritter and Stoker.
 
+use super::choices::{Choice, change};
 use crate::validate::chart::{Chart, Curve, Look};
+use crate::validate::statistics::{mean, rms};
 use crate::validate::template::{Template, point, points, rectangle};
 use crate::validate::{Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study};
 
@@ -13,7 +15,9 @@ pub(super) const STUDY: Study = Study {
 friction):\n\n\
     dry: h = (2 c - x/t)^2/(9 g), c = sqrt(g H);   wet: a plateau of 0.1426 m behind a bore of 1.641 m/s.\n\n\
 Water falls from rest at first, which those equations do not know: depths come later than theirs by a time that the fall takes, the same \
-for good. It stands beside each place as its lag, (x - x_exact)/(dx/dt): a scheme that is at fault lags more and more.",
+for good. It stands beside each place as its lag, (x - x_exact)/(dx/dt): a scheme that is at fault lags more and more.\n\n\
+Whether the scheme has a part in what is left is told by the change of each number from the coarser to the finer spacing, and, at the \
+coarser one, by another start and by 1.5 times the sound speed.",
     members,
     analyse,
 };
@@ -46,7 +50,14 @@ fn end(wet: bool) -> f64 {
     if wet { 4.2 } else { 7.8 }
 }
 
-fn member(rows: u32, wet: bool) -> Result<Member, String> {
+/// What is changed at the coarser spacing.
+const CHANGED: [Choice; 2] = [Choice::Seed, Choice::SoundSpeed];
+
+fn bed(wet: bool) -> &'static str {
+    if wet { "wet" } else { "dry" }
+}
+
+fn scene(rows: u32, wet: bool) -> Result<Template, String> {
     let dp = DEPTH / f64::from(rows);
     let end = end(wet);
     let mut template = Template::new(TEMPLATE)?
@@ -75,24 +86,37 @@ fn member(rows: u32, wet: bool) -> Result<Member, String> {
     } else {
         template.without("bodies.downstream")
     };
-    Ok(Member::new(
-        format!("{}_{rows}", if wet { "wet" } else { "dry" }),
-        template.text()?,
-        &[SURFACE],
-        Vec::new(),
-    ))
+    Ok(template)
 }
 
 fn members(effort: Effort) -> Result<Vec<Member>, String> {
-    let [coarse, fine] = rows(effort);
-    [(coarse, false), (coarse, true), (fine, false), (fine, true)]
-        .into_iter()
-        .map(|(rows, wet)| member(rows, wet))
-        .collect()
+    let member = |wet: bool, name: &str, scene: Template| {
+        let name = format!("{}_{name}", bed(wet));
+        scene
+            .text()
+            .map(|text| Member::new(name, text, &[SURFACE], Vec::new()))
+    };
+    let mut members = Vec::new();
+    for rows in rows(effort) {
+        for wet in [false, true] {
+            members.push(member(wet, &rows.to_string(), scene(rows, wet)?)?);
+        }
+    }
+    let [coarse, _] = rows(effort);
+    for wet in [false, true] {
+        for choice in CHANGED {
+            let changed = choice.change(scene(coarse, wet)?, (GRAVITY * DEPTH).sqrt());
+            members.push(member(wet, choice.name(), changed)?);
+        }
+    }
+    Ok(members)
 }
 
+/// Places and depths [m].
+type Surface = Vec<(f64, f64)>;
+
 /// Place and depth at a time [s].
-fn surface(recording: &Recording, time: f64) -> Option<Vec<(f64, f64)>> {
+fn surface(recording: &Recording, time: f64) -> Option<Surface> {
     let depths = recording.values_at(SURFACE, time)?;
     let rows = depths.iter().enumerate();
     Some(
@@ -130,92 +154,137 @@ fn stoker(x: f64, t: f64) -> f64 {
     }
 }
 
-/// A place that should go at a constant speed [m/s] since t = 0, and how late it is.
-fn place(what: String, found: Option<f64>, speed: f64, t: f64, why: &str) -> [Metric; 2] {
-    let lag = found.map(|x| (speed * t - x) / speed / unit());
-    [
-        Metric::new(what.clone(), found, Rule::NearShare(speed * t, 0.03), why).unit("m"),
-        Metric::new(
-            format!("{what}: its lag"),
-            lag,
-            Rule::Report(None),
-            "in units of sqrt(H/g)",
-        ),
-    ]
+/// Surfaces over one bed at one time: of the run that is judged, and of those that tell what it depends on.
+struct Found {
+    time: f64,
+    judged: Option<Surface>,
+    coarse: Option<Surface>,
+    others: [Option<Surface>; 3],
 }
 
-fn dry_metrics(what: &str, t: f64, found: Option<&Vec<(f64, f64)>>, metrics: &mut Vec<Metric>) {
-    let c = (GRAVITY * DEPTH).sqrt();
-    let inner = |s: &Vec<(f64, f64)>| {
-        let errors: Vec<f64> = s
-            .iter()
-            .filter(|p| (0.1 * DEPTH..0.8 * DEPTH).contains(&ritter(p.0, t)))
-            .map(|p| (p.1 - ritter(p.0, t)) / DEPTH)
-            .collect();
-        crate::validate::statistics::rms(&errors)
-    };
-    metrics.push(Metric::new(
-        format!("dry, {what}: profile between 0.1 H and 0.8 H, rms over H"),
-        found.and_then(inner),
-        Rule::AtMost(0.03),
-        "Ritter (1892)",
-    ));
-    for share in [0.1, 0.2] {
-        metrics.extend(place(
-            format!("dry, {what}: place of h = {share} H"),
-            found.and_then(|s| reach(s, share * DEPTH)),
-            2.0 * c - 3.0 * (GRAVITY * share * DEPTH).sqrt(),
-            t,
-            "Ritter; asked at H/dp 200",
-        ));
+impl Found {
+    fn new(results: &Results, wet: bool, rows: u32, time: f64) -> Self {
+        let of = |name: &str| {
+            let recording = results.finished(&format!("{}_{name}", bed(wet)))?;
+            surface(recording, time)
+        };
+        let [coarse, fine] = self::rows(results.effort).map(|rows| rows.to_string());
+        let [seed, sound_speed] = CHANGED.map(Choice::name);
+        Self {
+            time,
+            judged: of(&rows.to_string()),
+            coarse: of(&coarse),
+            others: [&fine, seed, sound_speed].map(of),
+        }
     }
-}
 
-fn wet_metrics(what: &str, t: f64, found: Option<&Vec<(f64, f64)>>, metrics: &mut Vec<Metric>) {
-    let (plateau, speed, bore) = PLATEAU;
-    let (from, to) = (
-        (speed - (GRAVITY * plateau).sqrt()) * t + 0.15,
-        bore * t - 0.2,
-    );
-    let level = |s: &Vec<(f64, f64)>| {
-        let inside: Vec<f64> = s
+    /// A number of the surface, and the shares by which what it depends on changes it.
+    fn number(&self, of: impl Fn(&Surface) -> Option<f64>) -> (Option<f64>, [Option<f64>; 3]) {
+        let base = self.coarse.as_ref().and_then(&of);
+        let changes = self.others.each_ref();
+        let changes = changes.map(|other| change(base, other.as_ref().and_then(&of)));
+        (self.judged.as_ref().and_then(of), changes)
+    }
+
+    /// Root mean square of the difference from another depth between 0.1 H and 0.8 H of Ritter's, over H.
+    fn off(&self, surface: &Surface, depth: impl Fn(usize) -> Option<f64>) -> Option<f64> {
+        let inside = surface
             .iter()
-            .filter(|p| p.0 > from && p.0 < to)
-            .map(|p| p.1)
-            .collect();
-        crate::validate::statistics::mean(&inside)
-    };
-    metrics.push(
-        Metric::new(
+            .enumerate()
+            .filter(|(_, p)| (0.1 * DEPTH..0.8 * DEPTH).contains(&ritter(p.0, self.time)));
+        let errors = inside.map(|(k, p)| Some((p.1 - depth(k)?) / DEPTH));
+        rms(&errors.collect::<Option<Vec<_>>>()?)
+    }
+
+    /// A place that should go at a constant speed [m/s] since t = 0, and how late it is.
+    fn place(
+        &self,
+        what: String,
+        of: impl Fn(&Surface) -> Option<f64>,
+        speed: f64,
+        why: &str,
+    ) -> [Metric; 2] {
+        let (found, changes) = self.number(of);
+        let exact = speed * self.time;
+        let lag = found.map(|x| (exact - x) / speed / unit());
+        [
+            Metric::new(what.clone(), found, Rule::NearShare(exact, 0.03), why)
+                .unit("m")
+                .changed_by(changes),
+            Metric::new(
+                format!("{what}: its lag"),
+                lag,
+                Rule::Report(None),
+                "in units of sqrt(H/g)",
+            ),
+        ]
+    }
+
+    fn dry_metrics(&self, what: &str) -> Vec<Metric> {
+        let c = (GRAVITY * DEPTH).sqrt();
+        let judged = self.judged.as_ref();
+        let error = judged.and_then(|s| self.off(s, |k| Some(ritter(s[k].0, self.time))));
+        let changes = self.others.each_ref().map(|other| {
+            let other = other.as_ref()?;
+            self.off(self.coarse.as_ref()?, |k| Some(other.get(k)?.1))
+        });
+        let profile = Metric::new(
+            format!("dry, {what}: profile between 0.1 H and 0.8 H, rms over H"),
+            error,
+            Rule::AtMost(0.03),
+            "Ritter (1892)",
+        );
+        let mut metrics = vec![profile.changed_by(changes)];
+        for share in [0.1, 0.2] {
+            metrics.extend(self.place(
+                format!("dry, {what}: place of h = {share} H"),
+                |s| reach(s, share * DEPTH),
+                2.0 * c - 3.0 * (GRAVITY * share * DEPTH).sqrt(),
+                "Ritter; asked at H/dp 200",
+            ));
+        }
+        metrics
+    }
+
+    fn wet_metrics(&self, what: &str) -> Vec<Metric> {
+        let (plateau, speed, bore) = PLATEAU;
+        let from = (speed - (GRAVITY * plateau).sqrt()) * self.time + 0.15;
+        let to = bore * self.time - 0.2;
+        let (level, changes) = self.number(|s| {
+            let inside = s.iter().filter(|p| p.0 > from && p.0 < to).map(|p| p.1);
+            mean(&inside.collect::<Vec<_>>())
+        });
+        let level = Metric::new(
             format!("wet, {what}: plateau"),
-            found.and_then(level),
+            level,
             Rule::NearShare(plateau, 0.03),
             "Stoker (1957); asked at H/dp 200",
-        )
-        .unit("m"),
-    );
-    metrics.extend(place(
-        format!("wet, {what}: bore, where the depth is half way"),
-        found.and_then(|s| reach(s, 0.5 * (plateau + WET))),
-        bore,
-        t,
-        "Stoker; asked at H/dp 200",
-    ));
+        );
+        let mut metrics = vec![level.unit("m").changed_by(changes)];
+        metrics.extend(self.place(
+            format!("wet, {what}: bore, where the depth is half way"),
+            |s| reach(s, 0.5 * (plateau + WET)),
+            bore,
+            "Stoker; asked at H/dp 200",
+        ));
+        metrics
+    }
 }
 
 fn analyse(results: &Results) -> Result<Report, String> {
     let mut report = Report::default();
     let mut curves: [Vec<Curve>; 2] = [Vec::new(), Vec::new()];
     for (k, rows) in rows(results.effort).into_iter().enumerate() {
-        let found = ["dry", "wet"].map(|bed| results.finished(&format!("{bed}_{rows}")));
         for count in TIMES {
-            let t = count * unit();
             let what = format!("H/dp {rows}, {count} sqrt(H/g)");
-            let [dry, wet] = found.map(|f| f.and_then(|f| surface(f, t)));
-            dry_metrics(&what, t, dry.as_ref(), &mut report.metrics);
-            wet_metrics(&what, t, wet.as_ref(), &mut report.metrics);
-            for (curves, surface) in curves.iter_mut().zip([dry, wet]) {
-                let Some(surface) = surface else { continue };
+            let [dry, wet] =
+                [false, true].map(|wet| Found::new(results, wet, rows, count * unit()));
+            report.metrics.extend(dry.dry_metrics(&what));
+            report.metrics.extend(wet.wet_metrics(&what));
+            for (curves, found) in curves.iter_mut().zip([dry, wet]) {
+                let Some(surface) = found.judged else {
+                    continue;
+                };
                 let name = if count == TIMES[0] {
                     format!("H/dp {rows}")
                 } else {

@@ -1,6 +1,7 @@
 //! The studies, one a file. A new one: its file, a line of [`ALL`], and its reference data under cases/reference.
 
 mod channel;
+mod choices;
 mod clay_dam;
 mod columns;
 mod contact;

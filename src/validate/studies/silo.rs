@@ -55,6 +55,11 @@ fn member(half: f64, effort: Effort) -> Result<Member, String> {
     Ok(Member::new(name(half), text, &SERIES, Vec::new()))
 }
 
+/// Largest speed that is expected at opening d [m/s].
+fn speed(d: f64) -> f64 {
+    (2.0 * GRAVITY * 3.0 * d).sqrt()
+}
+
 /// A silo of opening d [m] with so many particles across it.
 fn scene(d: f64, across: f64) -> Result<Template, String> {
     let spacing = d / across;
@@ -82,7 +87,7 @@ fn scene(d: f64, across: f64) -> Result<Template, String> {
         .with("domain.lower", point(-3.0 * d, bottom))
         .with("domain.upper", point(3.0 * d, top + d))
         .with("numerics.spacing", spacing)
-        .with("numerics.expected_speed", (2.0 * GRAVITY * 3.0 * d).sqrt())
+        .with("numerics.expected_speed", speed(d))
         .with("materials.grains.static_friction_angle", 0.32_f64.atan())
         .with("materials.grains.dynamic_friction_angle", 0.60_f64.atan())
         .with(
@@ -127,13 +132,14 @@ fn coefficient(recording: &Recording, half: f64) -> Option<f64> {
 
 fn analyse(results: &Results) -> Result<Report, String> {
     let mut report = Report::default();
+    let changes = evidence::changes(results);
     let mut rates = Vec::new();
     for half in HALF_OPENINGS {
         let recording = results.finished(&name(half));
         let found = recording.and_then(|r| coefficient(r, half));
         let d = 1e3 * opening(half);
         report.metrics.push(Metric::new(format!("D = {d:.1} mm: C"), found, Rule::Near(1.45, 0.12),
-            "fits of the published table lie from 1.435 to 1.504; the band holds them and a grid cell's offset"));
+            "fits of the published table lie from 1.435 to 1.504; the band holds them and a grid cell's offset").changed_by(changes));
         let drift =
             recording.and_then(|r| Some(rate(r, 0.65, FILLS[1])? / rate(r, FILLS[0], 0.65)? - 1.0));
         report.metrics.push(Metric::new(
@@ -147,14 +153,15 @@ fn analyse(results: &Results) -> Result<Report, String> {
     let fit = (rates.len() == HALF_OPENINGS.len())
         .then(|| power_law(&rates))
         .flatten();
-    report.metrics.push(Metric::new(
+    let exponent = Metric::new(
         "exponent of D over the five openings",
         fit.map(|f| f.0),
         Rule::Near(1.5, 0.05),
         "Beverloo's law in the plane, for openings of many grains",
-    ));
+    );
+    report.metrics.push(exponent.changed_by(changes));
     report.metrics.extend(evidence::offset(&rates));
-    report.metrics.extend(evidence::checks(results));
+    report.metrics.extend(evidence::checks(changes));
     let published = csv::columns(TABLE, ["W", "Q"])?;
     report.tables.push(table(&published, results));
     report.figures.push(figure(&published, &rates)?);

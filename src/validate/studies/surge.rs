@@ -1,6 +1,7 @@
 //! `surge`: fronts of collapsing columns of water against two laboratories' measurements.
 
 use crate::validate::chart::{Chart, Curve, Look};
+use crate::validate::report::MODEL;
 use crate::validate::statistics::interpolate;
 use crate::validate::template::{Template, rectangle};
 use crate::validate::{Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study};
@@ -174,27 +175,39 @@ fn largest_change(
     each.into_iter().max_by(f64::total_cmp)
 }
 
+/// Change from a spacing to the finest, from which that one's own is at most as far, and by each of [`CHANGED`].
+fn changes(
+    results: &Results,
+    column: &Column,
+    rows: u32,
+    measured: &[(f64, f64)],
+) -> Vec<Option<f64>> {
+    let of = |name: &str| {
+        results
+            .finished(&format!("{}_{name}", column.name))
+            .and_then(history)
+    };
+    let change = |one: &str, other: &str| largest_change(&of(one)?, &of(other)?, measured);
+    let [_, middle, fine] = self::rows(results.effort);
+    let mut all = vec![change(&rows.min(middle).to_string(), &fine.to_string())];
+    all.extend(CHANGED.map(|(name, ..)| change(&middle.to_string(), name)));
+    all
+}
+
 /// What the result still depends on.
 fn dependence(results: &Results, column: &Column, measured: &[(f64, f64)]) -> Vec<Metric> {
-    let of = |name: String| results.finished(&name).and_then(history);
     let [_, middle, fine] = rows(results.effort);
-    let base = of(format!("{}_{middle}", column.name));
-    let finer = (
-        format!("{fine} particles for {middle}"),
-        of(format!("{}_{fine}", column.name)),
-    );
-    let changed =
-        CHANGED.map(|(name, _, _, what)| (what.to_owned(), of(format!("{}_{name}", column.name))));
-    let each = std::iter::once(finer).chain(changed);
-    let each = each.map(|(what, other)| {
-        let change = base.as_ref().zip(other.as_ref());
+    let finer = format!("{fine} particles for {middle}");
+    let what = std::iter::once(finer).chain(CHANGED.map(|c| c.3.to_owned()));
+    let each = what.zip(changes(results, column, middle, measured));
+    let each = each.map(|(what, change)| {
         Metric::new(
             format!(
                 "{} column, {what}: largest change of the front",
                 column.name
             ),
-            change.and_then(|(a, b)| largest_change(a, b, measured)),
-            Rule::AtMost(0.03),
+            change,
+            Rule::AtMost(MODEL),
             "what the scheme still has a part in",
         )
     });
@@ -215,21 +228,24 @@ fn analyse(results: &Results) -> Result<Report, String> {
                 .finished(&format!("{}_{rows}", column.name))
                 .and_then(history);
             let what = format!("{} column, {rows} particles along it", column.name);
-            report.metrics.push(Metric::new(
+            let changes = changes(results, column, rows, &measured);
+            let error = Metric::new(
                 format!("{what}: largest error of the front at a measured time"),
                 found
                     .as_ref()
                     .and_then(|f| largest_error(f, &measured, 0.0)),
                 Rule::Between(-0.05, 0.05),
                 column.source,
-            ));
+            );
+            report.metrics.push(error.changed_by(changes.clone()));
             let delayed = found.as_ref().and_then(|f| best_delay(f, &measured));
-            report.metrics.push(Metric::new(
+            let error = Metric::new(
                 format!("{what}: the same, delayed"),
                 delayed.map(|d| d.1),
                 Rule::Between(-0.05, 0.05),
                 "a front that leads by the same time from first to last moves as fast as the measured one",
-            ));
+            );
+            report.metrics.push(error.changed_by(changes));
             report.metrics.push(
                 Metric::new(
                     format!("{what}: that delay"),

@@ -34,6 +34,8 @@ pub(super) struct Run {
     /// Grain diameter [m].
     pub(super) diameter: f64,
     pub(super) smoothing: f64,
+    /// Sound speed over the default's.
+    stiffness: f64,
     start: Start,
     /// End [s].
     until: f64,
@@ -47,6 +49,7 @@ pub(super) const BASE: Run = Run {
     preset: "glass_beads",
     diameter: 5e-3,
     smoothing: 1.6,
+    stiffness: 1.0,
     start: Start::Profile,
     until: 10.0,
 };
@@ -100,6 +103,21 @@ pub(super) const FLOWS: [Run; 9] = [
     Run {
         name: "glass_25_d0.5mm",
         diameter: 0.5e-3,
+        ..BASE
+    },
+];
+
+/// The first two of [`FLOWS`] at twice the sound speed: what compression has a part in.
+pub(super) const STIFF: [Run; 2] = [
+    Run {
+        name: "stiff_25",
+        stiffness: 2.0,
+        ..BASE
+    },
+    Run {
+        name: "stiff_25_fine",
+        rows: 40,
+        stiffness: 2.0,
         ..BASE
     },
 ];
@@ -174,12 +192,13 @@ impl Run {
         layer
     }
 
-    /// Largest speed that is expected [m/s].
+    /// Largest speed that is expected, a tenth of the sound speed [m/s].
     fn speed(&self) -> f64 {
-        match self.start {
+        let speed = match self.start {
             Start::Slab(speed) => speed,
             Start::Profile | Start::Rest => self.layer().surface_velocity(),
-        }
+        };
+        self.stiffness * speed
     }
 
     pub(super) fn member(&self, effort: Effort) -> Result<Member, String> {

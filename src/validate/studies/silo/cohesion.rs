@@ -1,9 +1,10 @@
 //! `silo_cohesion`: discharge of a cohesive silo against a published table of friction and cohesion.
 
-use super::{BULK_DENSITY, GRAVITY, SERIES, TEMPLATE};
+use super::{BULK_DENSITY, GRAVITY, SERIES, TEMPLATE, speed};
 use crate::validate::csv;
 use crate::validate::report::number;
 use crate::validate::statistics::interpolate;
+use crate::validate::studies::choices::{self, Choice, change};
 use crate::validate::template::{Template, point, points, rectangle};
 use crate::validate::{Effort, Member, Metric, Recording, Report, Results, Rule, Study, Table};
 
@@ -42,8 +43,15 @@ fn entries() -> Result<Vec<Entry>, String> {
     csv::columns(TABLE, ["mu_s", "Co", "Q"])
 }
 
+/// Entries (mu_s, Co) at which the scheme's choices are changed too: those that leave the table.
+const CHECKED: [[f64; 2]; 4] = [[0.3, 0.2], [0.3, 0.3], [0.5, 0.1], [0.5, 0.2]];
+
 fn name([friction, cohesion, _]: &Entry) -> String {
     format!("mu{friction:.1}_co{cohesion:.1}")
+}
+
+fn check(entry: &Entry, choice: Choice) -> String {
+    format!("check_{}_{}", name(entry), choice.name())
 }
 
 /// sqrt(W/g) [s].
@@ -51,10 +59,11 @@ fn scale() -> f64 {
     (OPENING / GRAVITY).sqrt()
 }
 
-fn member(entry: &Entry, effort: Effort) -> Result<Member, String> {
+/// A silo with so many particles across its opening.
+fn scene(entry: &Entry, across: f64) -> Result<Template, String> {
     let [friction, cohesion, _] = *entry;
     let w = OPENING;
-    let spacing = w / effort.pick(16.0, 6.0);
+    let spacing = w / across;
     let lip = 5.0 * spacing;
     let [side, fill] = SIZE.map(|size| size * w);
     let (edge, bottom, top) = (0.5 * w, -3.0 * w, fill + 0.5 * w);
@@ -66,11 +75,11 @@ fn member(entry: &Entry, effort: Effort) -> Result<Member, String> {
     ];
     let right = left.map(|[x, y]| [-x, y]);
     let right = [right[3], right[2], right[1], right[0]];
-    let text = Template::new(TEMPLATE)?
+    Ok(Template::new(TEMPLATE)?
         .with("domain.lower", point(-1.2 * side, bottom))
         .with("domain.upper", point(1.2 * side, top + w))
         .with("numerics.spacing", spacing)
-        .with("numerics.expected_speed", (2.0 * GRAVITY * 3.0 * w).sqrt())
+        .with("numerics.expected_speed", speed(w))
         .with("materials.grains.static_friction_angle", friction.atan())
         .with(
             "materials.grains.dynamic_friction_angle",
@@ -94,16 +103,35 @@ fn member(entry: &Entry, effort: Effort) -> Result<Member, String> {
         .with("gauges.discharge.from", point(-edge, 0.0))
         .with("gauges.discharge.to", point(edge, 0.0))
         .with("run.step", scale() / 20.0)
-        .with("run.until", (TIME[0] + TIME[1]) * scale())
-        .text()?;
-    Ok(Member::new(name(entry), text, &SERIES, Vec::new()))
+        .with("run.until", (TIME[0] + TIME[1]) * scale()))
 }
 
 fn members(effort: Effort) -> Result<Vec<Member>, String> {
-    entries()?
-        .iter()
-        .map(|entry| member(entry, effort))
-        .collect()
+    let across = effort.pick(16.0, 6.0);
+    let member = |name: String, scene: Template| {
+        scene
+            .text()
+            .map(|text| Member::new(name, text, &SERIES, Vec::new()))
+    };
+    let mut members = Vec::new();
+    for entry in &entries()? {
+        members.push(member(name(entry), scene(entry, across)?)?);
+        if CHECKED.contains(&[entry[0], entry[1]]) {
+            for choice in Choice::ALL {
+                let scene = scene(entry, choice.refinement() * across)?;
+                let changed = choice.change(scene, speed(OPENING));
+                members.push(member(check(entry, choice), changed)?);
+            }
+        }
+    }
+    Ok(members)
+}
+
+/// Relative change of Q by each choice.
+fn changes(results: &Results, entry: &Entry) -> [Option<f64>; 4] {
+    let found = |name: &str| results.finished(name).and_then(flow);
+    let base = found(&name(entry));
+    Choice::ALL.map(|choice| change(base, found(&check(entry, choice))))
 }
 
 /// Q over sqrt(g) W^1.5.
@@ -119,6 +147,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
     let entries = entries()?;
     let mut report = Report::default();
     let mut rows = Vec::new();
+    let mut checked = Vec::new();
     for entry in &entries {
         let [friction, cohesion, known] = *entry;
         let found = results.finished(&name(entry)).and_then(flow);
@@ -135,12 +164,14 @@ fn analyse(results: &Results) -> Result<Report, String> {
                 "about to stop: a tenth of the flow without cohesion",
             )
         };
-        report.metrics.push(Metric::new(
-            format!("mu_s = {friction:.1}, Co = {cohesion:.1}: Q"),
-            found,
-            rule,
-            why,
-        ));
+        let what = format!("mu_s = {friction:.1}, Co = {cohesion:.1}: Q");
+        let mut metric = Metric::new(&what, found, rule, why);
+        if CHECKED.contains(&[friction, cohesion]) {
+            let changes = changes(results, entry);
+            metric = metric.changed_by(changes);
+            checked.push((what, changes));
+        }
+        report.metrics.push(metric);
         rows.push(vec![
             number(friction),
             number(cohesion),
@@ -155,6 +186,8 @@ fn analyse(results: &Results) -> Result<Report, String> {
             .to_vec(),
         rows,
     });
+    let title = "Share by which each choice of the scheme changes Q".to_owned();
+    report.tables.push(choices::table(title, &checked));
     report.notes.push(NOTE.to_owned());
     Ok(report)
 }
