@@ -113,7 +113,7 @@ impl<const D: usize> Solver<D> {
             {
                 if FLUIDS && !RINGS {
                     let first_image = block.images.len() as u32;
-                    w.lean_less = self.find_images(state, i, block, &near[..count]);
+                    w.lean_less = self.find_images(state, i, block, &near[..count], &w.lean);
                     w.images = (first_image, block.images.len() as u32);
                     let v = &state.grains.velocity;
                     add_image_gradient(block.images_of(&w), i, v, &mut sums.images);

@@ -9,7 +9,7 @@
 //!   m (I - K) (a - a*) = F,   K = sum_walls (I - n n^T) |F_iw| V (n.x_iw)^2,                               (W4)
 //!
 //! F the viscous force without it. Where images stand for wall points (`mirror`) K is what they lack: it loses `lean_less`.
-//! In the first row of a flat wall K is 0.6 along the wall, 0.5 without images. Without it the sum of stresses that
+//! In the first row of a flat wall K is 0.6 along the wall (0.3 for the pair form's share), 0.5 without images. Without it the sum of stresses that
 //! a wall gets is that of about 0.7 dp inside, and rows there shear too fast: by 5 % of the stress at 20 rows, which is a
 //! fourth of a yield stress fluid's rate. The wall gets m K (a* - a) beside -F, so that momentum balances.
 //!

@@ -1,4 +1,5 @@
-//! Fluids at flat walls without slip: their shear rate is that of mirror images (docs/theory.md, W6).
+//! Fluids at flat walls without slip: their shear rate is that of mirror images (docs/theory.md, W6), and so is what the pair form
+//! takes along the wall (W9).
 //!
 //! A wall point counts as an image of the particle that sees it, at -v_i, whatever its depth. That is right for the image of
 //! particle i itself; images of its neighbours j move at -v_j. The difference,
@@ -8,6 +9,13 @@
 //! makes the shear rate of a linear flow right in every row (0.905 and 1.094 of it in the first two without), and its adjoint,
 //! forces between i and j, makes wall points bear tau_j. What shear stress is then carried on into the wall is what an image
 //! lacks of it: K of (W4) less sum_j (I - n n^T) |F'| V_j (d_i^2 - d_j^2), d the distance from the face.
+//!
+//! The pair form's share s_p against images is, along the face, with t = (I - n n^T)(x_i - x_j'),
+//!
+//!   F_i += V_i s_p sum_j eta_ij 2 (D + 2) |F'| V_j t (t . (v_i - v_j))/r'^2,                                 (W9)
+//!
+//! opposite for j. What its images lack along the face is 2 d_j^2 of curvature, a K of sum_j 2 (D + 2) |F'| V_j d_j^2 t t^T/r'^2:
+//! K is that of both forms by their shares.
 
 use crate::math::{Tensor, Vector, add_outer, apply, dot, norm};
 use crate::state::State;
@@ -34,6 +42,8 @@ pub(super) struct Image<const D: usize> {
     /// g' and its own image: V_j F' (x_i - x_j') and V_j F' (x_i' - x_j) [1/m].
     g: Vector<D>,
     back: Vector<D>,
+    /// sqrt(2 (D + 2) V_j |F'|) t/r' [1/m].
+    along: Vector<D>,
 }
 
 impl<const D: usize> Solver<D> {
@@ -97,15 +107,17 @@ impl<const D: usize> Solver<D> {
         found.filter(|m| m.distance > 0.0)
     }
 
-    /// Appends the images that particle i sees of its neighbours, and returns what they take from K of (W4).
+    /// Appends the images that particle i sees of its neighbours, and returns what they take from K of (W4), `lean` without them.
     pub(super) fn find_images(
         &self,
         state: &State<D>,
         i: usize,
         block: &mut Block<D>,
         near: &[u32],
+        lean: &Tensor<D>,
     ) -> Tensor<D> {
         let mut less = [[0.0; D]; D];
+        let mut of_pairs = [[0.0; D]; D];
         let Some(own) = self.mirrors.get(i).filter(|m| m.distance > 0.0) else {
             return less;
         };
@@ -130,16 +142,26 @@ impl<const D: usize> Solver<D> {
                 continue;
             }
             let vf = self.volume[j as usize] * self.kernel.f(r);
+            let by_pairs = (-2.0 * (D as f64 + 2.0) * vf).sqrt() / r;
+            let t = along.map(|c| by_pairs * c);
+            add_outer(&mut of_pairs, other.distance * other.distance, &t, &t);
             block.images.push(Image {
                 j,
                 g: std::array::from_fn(|k| vf * (along[k] + sum * n[k])),
                 back: std::array::from_fn(|k| vf * (along[k] - sum * n[k])),
+                along: t,
             });
             let part = -vf * sum * rise;
             for (k, row) in less.iter_mut().enumerate() {
                 row[k] += part;
             }
             add_outer(&mut less, -part, &n, &n);
+        }
+        let share = self.numerics.pair_viscosity_share;
+        for a in 0..D {
+            for b in 0..D {
+                less[a][b] += share * (lean[a][b] - less[a][b] - of_pairs[a][b]);
+            }
         }
         less
     }
@@ -175,6 +197,24 @@ pub(super) fn image_force<const D: usize>(
         );
         for k in 0..D {
             f[k] -= a[k] + b[k];
+        }
+    }
+    f
+}
+
+/// sum_j eta_ij 2 (D + 2) |F'| V_j t (t . (v_i - v_j))/r'^2 per volume (W9); `other` gives a neighbour's velocity and eta_ij.
+#[inline(always)]
+pub(super) fn image_drag<const D: usize>(
+    images: &[Image<D>],
+    v: &Vector<D>,
+    other: impl Fn(usize) -> (Vector<D>, f64),
+) -> Vector<D> {
+    let mut f = [0.0; D];
+    for image in images {
+        let (vj, eta) = other(image.j as usize);
+        let against = eta * (dot(v, &image.along) - dot(&vj, &image.along));
+        for k in 0..D {
+            f[k] += against * image.along[k];
         }
     }
     f

@@ -303,6 +303,33 @@ fn a_linear_shear_flow_over_a_floor_has_its_rate_in_every_row() {
 }
 
 #[test]
+fn the_pair_form_over_a_floor_leaves_a_linear_shear_flow_alone() {
+    let rate = 3.0;
+    let (mut solver, state) = on_floor(0.0, |x, _| [rate * x[1], 0.0]);
+    // All of the viscosity by pairs, and the same everywhere.
+    solver.numerics.pair_viscosity_share = 1.0;
+    solver.pair_viscosity.fill(1.0);
+    solver.sweep_pressure(&state, 1e-4);
+    let n = state.grains.len();
+    let (mut records, mut force) = (vec![Record::default(); n], vec![[0.0; 2]; n]);
+    solver.stress(&state.grains.velocity, &mut records, false, &[]);
+    solver.force(&records, &mut force, false, &[], |_, f| (*f, 0.0));
+    let shear = |i: usize| rate / SPACING * solver.width * solver.volume[i];
+    let rows: Vec<usize> = (0..n)
+        .filter(|&i| state.grains.position[i][1] < 0.15)
+        .collect();
+    assert_eq!(rows.len(), 300);
+    for i in rows {
+        let off = force[i][0] / shear(i);
+        assert!(
+            off.abs() < 5e-3,
+            "{off} of a row's shear at {:?}",
+            state.grains.position[i]
+        );
+    }
+}
+
+#[test]
 fn the_viscous_operator_over_a_floor_is_symmetric() {
     let (mut solver, state) = on_floor(0.2, |_, noise| *noise);
     solver.sweep_pressure(&state, 1e-4);

@@ -9,7 +9,7 @@ use crate::math::{Four, Lanes, Tensor, Vector, apply, in_lanes, inverse, scale};
 use crate::state::State;
 
 use super::Solver;
-use super::mirror::{add_image_gradient, image_force};
+use super::mirror::{add_image_gradient, image_drag, image_force};
 use super::pair::Block;
 use super::record::{Record, stresses};
 
@@ -134,10 +134,15 @@ impl<const D: usize> Solver<D> {
                             let image = image_force(block.images_of(w), &own.stress(), |j| {
                                 records[j].stress()
                             });
-                            let drag = apply(&w.c, &own.velocity());
+                            let v = own.velocity();
+                            let drag = apply(&w.c, &v);
+                            let less = image_drag(block.images_of(w), &v, |j| {
+                                (records[j].velocity(), self.between(i, j))
+                            });
                             for k in 0..D {
                                 let drive = if with_walls { w.cv[k] } else { 0.0 };
-                                f[k] += stress[k] + image[k] - 2.0 * share * (drag[k] - drive);
+                                let pairs = 2.0 * (drag[k] - drive) - less[k];
+                                f[k] += stress[k] + image[k] - share * pairs;
                             }
                         }
                         let (value, part) = finish(i, &scale(self.width * self.volume[i], &f));
@@ -147,6 +152,13 @@ impl<const D: usize> Solver<D> {
                 );
                 sum
             })
+    }
+
+    /// The pair form's viscosity between two particles, 0 where both have none: the harmonic mean [Pa s].
+    #[inline(always)]
+    fn between(&self, i: usize, j: usize) -> f64 {
+        let (a, b) = (self.pair_viscosity[i], self.pair_viscosity[j]);
+        2.0 * a * b / (a + b).max(f64::MIN_POSITIVE)
     }
 
     /// sum_j (tau_i + tau_j) g_ij and the pair form's share.

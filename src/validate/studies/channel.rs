@@ -29,7 +29,7 @@ struct Flow {
     fluid: Fluid,
     /// G [Pa/m].
     force: f64,
-    /// End [s]: shear-thinning fluids take long.
+    /// End [s]: as late as to have come within 1e-4 of steady flow a quarter before; shear-thinning fluids take long.
     until: f64,
 }
 
@@ -43,7 +43,7 @@ const FLOWS: [Flow; 4] = [
             yield_stress: 0.0,
         },
         force: 1000.0,
-        until: 1.6,
+        until: 3.2,
     },
     Flow {
         fluid: Fluid {
@@ -54,7 +54,7 @@ const FLOWS: [Flow; 4] = [
             yield_stress: 10.0,
         },
         force: 1000.0,
-        until: 1.6,
+        until: 3.2,
     },
     Flow {
         fluid: Fluid {
@@ -65,12 +65,12 @@ const FLOWS: [Flow; 4] = [
             yield_stress: 0.0,
         },
         force: 500.0,
-        until: 4.0,
+        until: 8.0,
     },
     Flow {
         fluid: CLAY,
         force: 2500.0,
-        until: 1.6,
+        until: 3.2,
     },
 ];
 
