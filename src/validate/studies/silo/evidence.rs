@@ -7,7 +7,7 @@ use crate::validate::studies::choices::{Choice, change};
 use crate::validate::{Effort, Member, Metric, Results, Rule};
 
 /// The opening at which the scheme's choices are changed, over twice the unit.
-const HALF: f64 = HALF_OPENINGS[1];
+pub(super) const HALF: f64 = HALF_OPENINGS[1];
 /// What the page says of it.
 pub(super) const NOTE: &str = "Openings here are 9 to 28 grains wide, and mu(I) has a length, the grain: Q/(sqrt(g) D^1.5) may depend on D/d. \
 Beverloo, Leniger and van de Velde (Chem. Eng. Sci. 15 (1961) 260) put it as D - k d for D; the rows with k fit that law to the five \
