@@ -1,12 +1,14 @@
 //! `contact_dynamics`: planar columns against discs computed one by one.
 
-use super::choices::{self, Choice};
-use super::columns::{SERIES, front, scene};
-use crate::validate::chart::{Chart, Curve, Look};
+mod discs;
+mod figures;
+
+use self::discs::{CHECKED, COLUMNS, Discs, HEIGHT, fall};
+use super::choices;
+use super::columns::front;
 use crate::validate::csv;
 use crate::validate::statistics::{interpolate, mean};
-use crate::validate::template::{Template, point};
-use crate::validate::{Effort, Figure, Member, Metric, Recording, Report, Results, Rule, Study};
+use crate::validate::{Metric, Recording, Report, Results, Rule, Study};
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -18,144 +20,20 @@ Staron and Popinet (J. Fluid Mech. 686 (2011) 378-408) fitted to such discs: mu_
 bulk density, ours that of the grains, so that our I0 is 0.40/sqrt(phi_max). Lengths are over H0, times over sqrt(H0/g).\n\n\
 Profile error: mean of abs(h - h_discs)/H0 over the places of the data at which either is above 0, both sides averaged, mean \
 of three seeds. Front: outermost place with a depth of one grain, mean of both sides.",
-    members,
+    members: discs::members,
     analyse,
 };
 
-const GRAVITY: f64 = 9.81;
-/// Height of both columns: everything scales with it [m].
-const HEIGHT: f64 = 0.1;
 const FRONTS: &str = include_str!("../../../cases/reference/contact_dynamics_fronts.csv");
 const PROFILES: &str = "column_collapse_dem_profiles.csv";
 /// Times at which profiles are compared, over sqrt(H0/g); the discs rest from five on.
 const TIMES: [f64; 4] = [1.0, 2.0, 3.0, 6.0];
 
-/// A column of discs; lengths over H0.
-struct Discs {
-    name: &'static str,
-    aspect: f64,
-    half_width: f64,
-    /// H0/d.
-    grains: f64,
-    /// How far the domain goes, and the spacing of the profile in the data.
-    reach: f64,
-    place: f64,
-}
-
-const COLUMNS: [Discs; 2] = [
-    Discs {
-        name: "a0.49",
-        aspect: 0.49,
-        half_width: 2.041,
-        grains: 30.0,
-        reach: 5.4,
-        place: 0.2,
-    },
-    Discs {
-        name: "a6.26",
-        aspect: 6.26,
-        half_width: 0.160,
-        grains: 134.0,
-        reach: 3.2,
-        place: 0.1,
-    },
-];
-
-/// The column at which the scheme's choices are changed: the one whose profiles leave the band.
-const CHECKED: &Discs = &COLUMNS[0];
-
-impl Discs {
-    /// The column with so many spacings over a grain.
-    fn scene(&self, spacings: f64, seed: u32, effort: Effort) -> Result<Template, String> {
-        let grain = HEIGHT / self.grains;
-        let spacing = spacings * grain;
-        let fall = fall();
-        let beyond = self.places() as f64 * self.place * HEIGHT;
-        let size = [self.half_width * HEIGHT, HEIGHT];
-        Ok(scene(size, spacing, self.reach * HEIGHT)?
-            .with("materials.sand.static_friction_angle", 0.32_f64.atan())
-            .with("materials.sand.dynamic_friction_angle", 0.60_f64.atan())
-            .with(
-                "materials.sand.inertial_number_scale",
-                0.40 / 0.6_f64.sqrt(),
-            )
-            .with("materials.sand.grain_diameter", grain)
-            .with("numerics.seed", i64::from(seed))
-            .with("gauges.surface.kind", "profile")
-            .with("gauges.surface.from", point(-beyond, 0.0))
-            .with("gauges.surface.to", point(beyond, 0.0))
-            .with("gauges.surface.count", 2 * self.places() as i64 + 1)
-            .with("run.step", fall / 10.0)
-            .with("run.until", effort.pick(8.0, 6.0) * fall))
-    }
-
-    fn run(&self, seed: u32) -> String {
-        format!("{}_seed{seed}", self.name)
-    }
-
-    fn check(&self, choice: Choice) -> String {
-        format!("check_{}_{}", self.name, choice.name())
-    }
-
-    /// Mean of |h - h of the first seed| over H0 by each choice, over the places at which either is above 0.
-    fn changes(&self, results: &Results, time: f64) -> [Option<f64>; 4] {
-        let profile = |name: String| self.profile(results.finished(&name)?, time);
-        let base = profile(self.run(1));
-        Choice::ALL.map(|choice| {
-            let depths = base.as_ref()?.iter().enumerate();
-            let base: Profile = depths.map(|(k, h)| (k as f64 * self.place, *h)).collect();
-            profile_error(&profile(self.check(choice))?, self.place, &base)
-        })
-    }
-
-    /// Places of the profile on either side of the middle.
-    fn places(&self) -> usize {
-        (0.96 * self.reach / self.place) as usize
-    }
-
-    /// Depths over H0 at x = 0, dx, 2 dx, ..., both sides averaged.
-    fn profile(&self, recording: &Recording, time: f64) -> Option<Vec<f64>> {
-        let depths = recording.values_at("gauge.surface.depth", time * fall())?;
-        let middle = self.places();
-        let both = |k: usize| 0.5 * (depths[middle + k] + depths[middle - k]) / HEIGHT;
-        (depths.len() == 2 * middle + 1).then(|| (0..=middle).map(both).collect())
-    }
-}
-
-fn fall() -> f64 {
-    (HEIGHT / GRAVITY).sqrt()
-}
-
-fn members(effort: Effort) -> Result<Vec<Member>, String> {
-    let series = [&SERIES[..], &["gauge.surface.depth"]].concat();
-    let member = |name: String, scene: Template| {
-        scene
-            .text()
-            .map(|text| Member::new(name, text, &series, Vec::new()))
-    };
-    let spacings = effort.pick(1.0, 3.0);
-    let mut members = Vec::new();
-    for column in &COLUMNS {
-        for seed in 1..=effort.pick(3, 1) {
-            members.push(member(
-                column.run(seed),
-                column.scene(spacings, seed, effort)?,
-            )?);
-        }
-    }
-    for choice in Choice::ALL {
-        let scene = CHECKED.scene(spacings / choice.refinement(), 1, effort)?;
-        let changed = choice.change(scene, (GRAVITY * HEIGHT).sqrt());
-        members.push(member(CHECKED.check(choice), changed)?);
-    }
-    Ok(members)
-}
-
 /// Depths of the discs at one time: (x, h), both over H0.
 type Profile = Vec<(f64, f64)>;
 
 /// The discs' profile of a column at a time.
-fn discs(rows: &[[f64; 4]], column: &Discs, time: f64) -> Profile {
+fn discs_at(rows: &[[f64; 4]], column: &Discs, time: f64) -> Profile {
     let mine = rows
         .iter()
         .filter(|[a, t, ..]| *a == column.aspect && *t == time);
@@ -195,7 +73,9 @@ fn analyse(results: &Results) -> Result<Report, String> {
         report
             .metrics
             .extend(judge_fronts(results, column, &fronts));
-        report.figures.push(figure(results, column, &profiles)?);
+        report
+            .figures
+            .push(figures::profiles(results, column, &profiles)?);
     }
     let changes = TIMES.map(|time| {
         let what = format!("a = {}, t = {time} sqrt(H0/g)", CHECKED.aspect);
@@ -205,7 +85,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
         "Mean change of the profile by each choice of the scheme, over H0".to_owned(),
         &changes,
     ));
-    report.figures.push(front_figure(results, &fronts)?);
+    report.figures.push(figures::fronts(results, &fronts)?);
     if profiles.is_empty() {
         report.notes.push(format!(
             "The discs' profiles are not part of this repository (cases/reference/SOURCE.md); give the folder of {PROFILES} \
@@ -221,7 +101,7 @@ fn recordings<'a>(results: &'a Results, column: &'a Discs) -> Vec<&'a Recording>
 
 fn judge_profiles(results: &Results, column: &Discs, rows: &[[f64; 4]]) -> Vec<Metric> {
     let error = |time: f64| {
-        let known = discs(rows, column, time);
+        let known = discs_at(rows, column, time);
         let runs = recordings(results, column).into_iter();
         let errors =
             runs.filter_map(|r| profile_error(&column.profile(r, time)?, column.place, &known));
@@ -300,87 +180,6 @@ fn judge_fronts(results: &Results, column: &Discs, rows: &[[f64; 4]]) -> Vec<Met
     metrics
 }
 
-/// Profiles of the first seed and of the discs.
-fn figure(results: &Results, column: &Discs, rows: &[[f64; 4]]) -> Result<Figure, String> {
-    let mut curves = Vec::new();
-    for (colour, time) in TIMES.into_iter().enumerate() {
-        if let Some(depths) = recordings(results, column)
-            .first()
-            .and_then(|r| column.profile(r, time))
-        {
-            let points = depths
-                .iter()
-                .enumerate()
-                .map(|(k, h)| (k as f64 * column.place, *h));
-            curves.push(Curve::new(
-                format!("t = {time} sqrt(H0/g)"),
-                points.collect(),
-                Look::Line,
-                colour,
-            ));
-        }
-        let known = discs(rows, column, time);
-        if !known.is_empty() {
-            curves.push(Curve::new(
-                format!("t = {time}, discs"),
-                known,
-                Look::Dots,
-                colour,
-            ));
-        }
-    }
-    let chart = Chart {
-        x: "x / H0".to_owned(),
-        y: "h / H0".to_owned(),
-        curves,
-    };
-    Ok(Figure {
-        name: format!("profiles_{}", column.name.replace('.', "")),
-        caption: format!(
-            "a = {}: profiles of the first seed (lines) and of the discs (dots).",
-            column.aspect
-        ),
-        svg: chart.svg()?,
-    })
-}
-
-fn front_figure(results: &Results, rows: &[[f64; 4]]) -> Result<Figure, String> {
-    let mut curves = Vec::new();
-    for (colour, column) in COLUMNS.iter().enumerate() {
-        if let Some(recording) = recordings(results, column).first() {
-            let points = front(recording)
-                .into_iter()
-                .map(|(t, x)| (t / fall(), x / HEIGHT));
-            curves.push(Curve::new(
-                format!("a = {}", column.aspect),
-                points.collect(),
-                Look::Line,
-                colour,
-            ));
-        }
-        let known = rows
-            .iter()
-            .filter(|row| row[0] == column.aspect)
-            .map(|row| (row[1], row[2]));
-        curves.push(Curve::new(
-            format!("a = {}, discs", column.aspect),
-            known.collect(),
-            Look::Dots,
-            colour,
-        ));
-    }
-    let chart = Chart {
-        x: "t / sqrt(H0/g)".to_owned(),
-        y: "front / H0".to_owned(),
-        curves,
-    };
-    Ok(Figure {
-        name: "fronts".to_owned(),
-        caption: "Front over time of the first seed and of the discs.".to_owned(),
-        svg: chart.svg()?,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -406,6 +205,6 @@ mod tests {
             [0.49, 2.0, 0.2, 0.8],
             [6.26, 1.0, 0.2, 0.7],
         ];
-        assert_eq!(discs(&all, &COLUMNS[0], 2.0), vec![(0.2, 0.8)]);
+        assert_eq!(discs_at(&all, &COLUMNS[0], 2.0), vec![(0.2, 0.8)]);
     }
 }

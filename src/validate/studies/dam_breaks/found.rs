@@ -1,0 +1,167 @@
+//! Surfaces of the runs, and how far they are from the exact ones.
+
+use super::{CHANGED, DEPTH, FEET, FIRST_FOOT, GRAVITY, PLATEAU, SURFACE, WET, bed, unit};
+use crate::validate::statistics::{mean, rms};
+use crate::validate::studies::choices::{Choice, change};
+use crate::validate::{Metric, Recording, Results, Rule};
+
+/// Places and depths [m].
+type Surface = Vec<(f64, f64)>;
+
+/// Place and depth at a time [s].
+fn surface(recording: &Recording, time: f64) -> Option<Surface> {
+    let depths = recording.values_at(SURFACE, time)?;
+    let rows = depths.iter().enumerate();
+    Some(
+        rows.map(|(k, h)| (FIRST_FOOT + FEET * k as f64, *h))
+            .collect(),
+    )
+}
+
+/// Outermost place with at least this depth [m].
+fn reach(surface: &[(f64, f64)], depth: f64) -> Option<f64> {
+    let k = surface.iter().rposition(|p| p.1 >= depth)?;
+    let (a, b) = (surface[k], *surface.get(k + 1)?);
+    Some(a.0 + (a.1 - depth) / (a.1 - b.1) * (b.0 - a.0))
+}
+
+/// Depth of the dry bed's solution [m].
+pub(super) fn ritter(x: f64, t: f64) -> f64 {
+    let c = (GRAVITY * DEPTH).sqrt();
+    if x < -c * t {
+        DEPTH
+    } else if x > 2.0 * c * t {
+        0.0
+    } else {
+        (2.0 * c - x / t).powi(2) / (9.0 * GRAVITY)
+    }
+}
+
+/// Depth of the wet bed's solution [m].
+pub(super) fn stoker(x: f64, t: f64) -> f64 {
+    let (plateau, speed, bore) = PLATEAU;
+    if x > bore * t {
+        WET
+    } else if x > (speed - (GRAVITY * plateau).sqrt()) * t {
+        plateau
+    } else {
+        ritter(x, t)
+    }
+}
+
+/// Surfaces over one bed at one time: of the run that is judged, and of those that tell what it depends on.
+pub(super) struct Found {
+    time: f64,
+    pub(super) judged: Option<Surface>,
+    coarse: Option<Surface>,
+    others: [Option<Surface>; 3],
+}
+
+impl Found {
+    pub(super) fn new(results: &Results, wet: bool, rows: u32, time: f64) -> Self {
+        let of = |name: &str| {
+            let recording = results.finished(&format!("{}_{name}", bed(wet)))?;
+            surface(recording, time)
+        };
+        let [coarse, fine] = super::rows(results.effort).map(|rows| rows.to_string());
+        let [seed, sound_speed] = CHANGED.map(Choice::name);
+        Self {
+            time,
+            judged: of(&rows.to_string()),
+            coarse: of(&coarse),
+            others: [&fine, seed, sound_speed].map(of),
+        }
+    }
+
+    /// A number of the surface, and the shares by which what it depends on changes it.
+    fn number(&self, of: impl Fn(&Surface) -> Option<f64>) -> (Option<f64>, [Option<f64>; 3]) {
+        let base = self.coarse.as_ref().and_then(&of);
+        let changes = self.others.each_ref();
+        let changes = changes.map(|other| change(base, other.as_ref().and_then(&of)));
+        (self.judged.as_ref().and_then(of), changes)
+    }
+
+    /// Root mean square of the difference from another depth between 0.1 H and 0.8 H of Ritter's, over H.
+    fn off(&self, surface: &Surface, depth: impl Fn(usize) -> Option<f64>) -> Option<f64> {
+        let inside = surface
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| (0.1 * DEPTH..0.8 * DEPTH).contains(&ritter(p.0, self.time)));
+        let errors = inside.map(|(k, p)| Some((p.1 - depth(k)?) / DEPTH));
+        rms(&errors.collect::<Option<Vec<_>>>()?)
+    }
+
+    /// A place that should go at a constant speed [m/s] since t = 0, and how late it is.
+    fn place(
+        &self,
+        what: String,
+        of: impl Fn(&Surface) -> Option<f64>,
+        speed: f64,
+        why: &str,
+    ) -> [Metric; 2] {
+        let (found, changes) = self.number(of);
+        let exact = speed * self.time;
+        let lag = found.map(|x| (exact - x) / speed / unit());
+        [
+            Metric::new(what.clone(), found, Rule::NearShare(exact, 0.03), why)
+                .unit("m")
+                .changed_by(changes),
+            Metric::new(
+                format!("{what}: its lag"),
+                lag,
+                Rule::Report(None),
+                "in units of sqrt(H/g)",
+            ),
+        ]
+    }
+
+    pub(super) fn dry_metrics(&self, what: &str) -> Vec<Metric> {
+        let c = (GRAVITY * DEPTH).sqrt();
+        let judged = self.judged.as_ref();
+        let error = judged.and_then(|s| self.off(s, |k| Some(ritter(s[k].0, self.time))));
+        let changes = self.others.each_ref().map(|other| {
+            let other = other.as_ref()?;
+            self.off(self.coarse.as_ref()?, |k| Some(other.get(k)?.1))
+        });
+        let profile = Metric::new(
+            format!("dry, {what}: profile between 0.1 H and 0.8 H, rms over H"),
+            error,
+            Rule::AtMost(0.03),
+            "Ritter (1892)",
+        );
+        let mut metrics = vec![profile.changed_by(changes)];
+        for share in [0.1, 0.2] {
+            metrics.extend(self.place(
+                format!("dry, {what}: place of h = {share} H"),
+                |s| reach(s, share * DEPTH),
+                2.0 * c - 3.0 * (GRAVITY * share * DEPTH).sqrt(),
+                "Ritter; asked at H/dp 200",
+            ));
+        }
+        metrics
+    }
+
+    pub(super) fn wet_metrics(&self, what: &str) -> Vec<Metric> {
+        let (plateau, speed, bore) = PLATEAU;
+        let from = (speed - (GRAVITY * plateau).sqrt()) * self.time + 0.15;
+        let to = bore * self.time - 0.2;
+        let (level, changes) = self.number(|s| {
+            let inside = s.iter().filter(|p| p.0 > from && p.0 < to).map(|p| p.1);
+            mean(&inside.collect::<Vec<_>>())
+        });
+        let level = Metric::new(
+            format!("wet, {what}: plateau"),
+            level,
+            Rule::NearShare(plateau, 0.03),
+            "Stoker (1957); asked at H/dp 200",
+        );
+        let mut metrics = vec![level.unit("m").changed_by(changes)];
+        metrics.extend(self.place(
+            format!("wet, {what}: bore, where the depth is half way"),
+            |s| reach(s, 0.5 * (plateau + WET)),
+            bore,
+            "Stoker; asked at H/dp 200",
+        ));
+        metrics
+    }
+}
