@@ -1,30 +1,31 @@
 //! Whose the exponent is: Beverloo's offset of grains, and what the scheme's choices change.
 
-use super::{GRAIN, GRAVITY, HALF_OPENINGS, SERIES, coefficient, opening, scene, speed};
-use crate::validate::report::MODEL;
-use crate::validate::statistics::mean;
-use crate::validate::studies::choices::{Choice, change};
+use super::{GRAIN, GRAVITY, HALF_OPENINGS, SERIES, coefficient, name, opening, scene, speed};
+use crate::validate::report::Table;
+use crate::validate::statistics::{mean, power_law};
+use crate::validate::studies::choices::{self, Choice, change};
 use crate::validate::{Effort, Member, Metric, Results, Rule};
 
-/// The opening at which the scheme's choices are changed, over twice the unit.
-pub(super) const HALF: f64 = HALF_OPENINGS[1];
 /// What the page says of it.
 pub(super) const NOTE: &str = "Openings here are 9 to 28 grains wide, and mu(I) has a length, the grain: Q/(sqrt(g) D^1.5) may depend on D/d. \
 Beverloo, Leniger and van de Velde (Chem. Eng. Sci. 15 (1961) 260) put it as D - k d for D; the rows with k fit that law to the five \
-openings. The rows of changes show what the scheme's choices do to C at one of them: where they are small against its \
-distance from D^1.5, and the law with k fits, the exponent of D alone is the model's.";
+openings. The table of changes shows what the scheme's choices do to C and to the exponent: where they are small against the distance \
+from D^1.5, and the law with k fits, the exponent of D alone is the model's.";
 
-fn check(choice: Choice) -> String {
-    format!("check_{}", choice.name())
+fn check(half: f64, choice: Choice) -> String {
+    format!("check_{}_{}", name(half), choice.name())
 }
 
 pub(super) fn members(effort: Effort) -> impl Iterator<Item = Result<Member, String>> {
-    Choice::ALL.into_iter().map(move |choice| {
-        let d = opening(HALF);
+    let all = HALF_OPENINGS
+        .into_iter()
+        .flat_map(|half| Choice::ALL.map(|choice| (half, choice)));
+    all.map(move |(half, choice)| {
+        let d = opening(half);
         let across = effort.pick(20.0, 8.0);
         let changed = choice.change(scene(d, choice.refinement() * across)?, speed(d));
         Ok(Member::new(
-            check(choice),
+            check(half, choice),
             changed.text()?,
             &SERIES,
             Vec::new(),
@@ -32,28 +33,49 @@ pub(super) fn members(effort: Effort) -> impl Iterator<Item = Result<Member, Str
     })
 }
 
-/// Relative change of C by each choice.
-pub(super) fn changes(results: &Results) -> [Option<f64>; 4] {
-    let found = |name: &str| coefficient(results.finished(name)?, HALF);
-    let base = found(&super::name(HALF));
-    Choice::ALL.map(|choice| change(base, found(&check(choice))))
+fn found(results: &Results, name: &str, half: f64) -> Option<f64> {
+    coefficient(results.finished(name)?, half)
 }
 
-/// These as comparisons.
-pub(super) fn checks(changes: [Option<f64>; 4]) -> impl Iterator<Item = Metric> {
-    let pairs = Choice::ALL.into_iter().zip(changes);
-    pairs.map(|(choice, change)| {
-        Metric::new(
-            format!(
-                "D = {:.1} mm: change of C, {}",
-                1e3 * opening(HALF),
-                choice.what()
-            ),
-            change.map(f64::abs),
-            Rule::AtMost(MODEL),
-            "a residual is the model's where all of these together change less than 3 %",
-        )
-    })
+/// Relative change of C by each choice, at an opening.
+pub(super) fn changes(results: &Results, half: f64) -> [Option<f64>; 4] {
+    let base = found(results, &name(half), half);
+    Choice::ALL.map(|choice| change(base, found(results, &check(half, choice), half)))
+}
+
+/// Relative change of the exponent of D by each choice, changed at all openings.
+pub(super) fn changes_of_exponent(results: &Results) -> [Option<f64>; 4] {
+    let exponent = |name: &dyn Fn(f64) -> String| {
+        let rate = |half| {
+            Some((
+                opening(half),
+                rate(found(results, &name(half), half)?, half),
+            ))
+        };
+        let rates: Option<Vec<_>> = HALF_OPENINGS.into_iter().map(rate).collect();
+        Some(power_law(&rates?)?.0)
+    };
+    let base = exponent(&name);
+    Choice::ALL.map(|choice| change(base, exponent(&|half| check(half, choice))))
+}
+
+/// Q at a C [m^2/s].
+pub(super) fn rate(c: f64, half: f64) -> f64 {
+    c * GRAVITY.sqrt() * opening(half).powf(1.5)
+}
+
+/// All of these.
+pub(super) fn table(results: &Results) -> Table {
+    let each = HALF_OPENINGS.into_iter().map(|half| {
+        let what = format!("C, D = {:.1} mm", 1e3 * opening(half));
+        (what, changes(results, half))
+    });
+    let exponent = ("exponent of D".to_owned(), changes_of_exponent(results));
+    let rows: Vec<_> = each.chain([exponent]).collect();
+    choices::table(
+        "Share by which each choice of the scheme changes what is compared".to_owned(),
+        &rows,
+    )
 }
 
 /// Q^(2/3) = (C sqrt(g))^(2/3) (D - k d) by least squares: C, k and the largest relative residual of Q.
