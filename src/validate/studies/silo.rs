@@ -151,7 +151,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
             Rule::Report(Some(0.0)),
             "the fill does not matter while it is higher than 1.2 widths",
         ));
-        rates.extend(found.map(|c| (opening(half), evidence::rate(c, half))));
+        rates.extend(found.map(|c| (opening(half), evidence::area_rate(c, half))));
     }
     let fit = (rates.len() == HALF_OPENINGS.len())
         .then(|| power_law(&rates))

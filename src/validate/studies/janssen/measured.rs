@@ -36,7 +36,7 @@ impl Measured {
     }
 }
 
-/// `None` where the run does not say enough.
+/// Means over the last second of a run; `None` where a variable is missing.
 pub(super) fn measure(recording: &Recording) -> Option<Measured> {
     let end = *recording.time.last()?;
     let late = |variable: &str| {

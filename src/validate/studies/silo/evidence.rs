@@ -45,26 +45,26 @@ pub(super) fn changes(results: &Results, half: f64) -> [Option<f64>; 4] {
 
 /// Relative change of the exponent of D by each choice, changed at all openings.
 pub(super) fn changes_of_exponent(results: &Results) -> [Option<f64>; 4] {
-    let exponent = |name: &dyn Fn(f64) -> String| {
-        let rate = |half| {
-            Some((
-                opening(half),
-                rate(found(results, &name(half), half)?, half),
-            ))
-        };
-        let rates: Option<Vec<_>> = HALF_OPENINGS.into_iter().map(rate).collect();
-        Some(power_law(&rates?)?.0)
+    let of = |name: &dyn Fn(f64) -> String| {
+        exponent(HALF_OPENINGS.map(|half| found(results, &name(half), half)))
     };
-    let base = exponent(&name);
-    Choice::ALL.map(|choice| change(base, exponent(&|half| check(half, choice))))
+    let base = of(&name);
+    Choice::ALL.map(|choice| change(base, of(&|half| check(half, choice))))
 }
 
-/// Q at a C [m^2/s].
-pub(super) fn rate(c: f64, half: f64) -> f64 {
+/// Exponent of D of these C, one for each opening; `None` if one is missing.
+fn exponent(coefficients: [Option<f64>; HALF_OPENINGS.len()]) -> Option<f64> {
+    let each = HALF_OPENINGS.into_iter().zip(coefficients);
+    let rates = each.map(|(half, c)| Some((opening(half), area_rate(c?, half))));
+    Some(power_law(&rates.collect::<Option<Vec<_>>>()?)?.0)
+}
+
+/// Area that leaves per time, C sqrt(g) D^1.5 [m^2/s].
+pub(super) fn area_rate(c: f64, half: f64) -> f64 {
     c * GRAVITY.sqrt() * opening(half).powf(1.5)
 }
 
-/// All of these.
+/// What each choice changes of C at every opening, and of the exponent.
 pub(super) fn table(results: &Results) -> Table {
     let each = HALF_OPENINGS.into_iter().map(|half| {
         let what = format!("C, D = {:.1} mm", 1e3 * opening(half));
@@ -124,6 +124,16 @@ fn fit(rates: &[(f64, f64)]) -> Option<(f64, f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_known_exponent_is_found() {
+        let c = HALF_OPENINGS.map(|half| Some(1.4 * opening(half).powf(0.1)));
+        let found = exponent(c).unwrap();
+        assert!((found - 1.6).abs() < 1e-9, "{found}");
+        let mut c = c;
+        c[2] = None;
+        assert_eq!(exponent(c), None);
+    }
 
     #[test]
     fn a_known_offset_is_found() {
