@@ -230,8 +230,7 @@ fn whole(
     };
     let mut failed = None;
     // A tenth of the acoustic bound: one internal step each.
-    let n = &scene.numerics;
-    let h = 0.1 * n.courant * n.smoothing_ratio * n.spacing / n.sound_speed;
+    let h = 0.1 * scene.numerics.acoustic_step();
     add("do_step of one internal step", &mut || {
         let time = component.time();
         failed = component.do_step(time, h).err().or(failed.take());

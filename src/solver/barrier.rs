@@ -22,7 +22,7 @@ const LOST: f64 = 0.75;
 /// Speed over the sound speed at which all of [`LOST`] is missing [1].
 const SOFT: f64 = 0.01;
 
-/// k of a particle over dp^2 and what the acoustic step allows: (this/dt)^2 [1]. Its frequency at a surface is 1.6 sqrt(k)/dp, twice that in
+/// k of a particle over dp^2 and what the step allows: (this/dt)^2 [1]. Its frequency at a surface is 1.6 sqrt(k)/dp, twice that in
 /// corners, against 2/dt that symplectic Euler bears.
 const STIFFNESS: f64 = 0.6;
 
@@ -61,7 +61,7 @@ impl<const D: usize> Nearness<D> {
 }
 
 impl<const D: usize> Barrier<D> {
-    /// For a spacing [m] and the length of an acoustic step [s].
+    /// For a spacing [m] and the length of the longest step [s].
     pub(super) fn new(spacing: f64, step: f64) -> Self {
         Self {
             kernel: WendlandC2::new(spacing),

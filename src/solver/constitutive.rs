@@ -17,8 +17,13 @@ pub(super) struct Response {
 }
 
 impl<const D: usize> Solver<D> {
-    /// rho and the relaxed strain rate over a step, from the kinematics at its end.
-    pub(super) fn advance_density(&self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
+    /// rho over the last acoustic step of a step, and what else goes over the whole of it, from the kinematics at its end.
+    pub(super) fn advance_density(
+        &self,
+        state: &mut State<D>,
+        dt: f64,
+        last: f64,
+    ) -> Result<(), SolverError> {
         let relax = 1.0 - (-dt / self.numerics.strain_relaxation_time).exp();
         let grains = &mut state.grains;
         let phase = &grains.phase;
@@ -26,9 +31,10 @@ impl<const D: usize> Solver<D> {
         self.workers.both(density, relaxed, |i, rho, relaxed| {
             let k = &self.kinematics[i];
             let material = &self.materials[phase[i] as usize];
-            let rate = k.divergence + self.packing_rate(material, k, (*rho, *relaxed), dt);
+            let room = self.packing_rate(material, k, (*rho, *relaxed), dt);
+            let rate = k.divergence + dt / last * room;
             // Exact for a constant rate, and positive whatever the step.
-            let new = *rho * (-dt * rate).exp();
+            let new = *rho * (-last * rate).exp();
             let least = material.parted_density * material.rest_density();
             // NaN stays NaN, to be found below.
             *rho = if new < least { least } else { new };

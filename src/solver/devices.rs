@@ -4,6 +4,7 @@ use crate::math::{CHUNK, Vector, add, dot, norm, scale, sub};
 use crate::state::State;
 
 use super::Solver;
+use super::timestep::MOST_OF_A_PLATE;
 
 /// Distance to the leading edge at which a grain stops a plate, over the spacing; of one that is in a wall already.
 const TOUCH: f64 = 0.25;
@@ -65,7 +66,7 @@ impl<const D: usize> Solver<D> {
         for g in 0..self.plates.len() {
             let plate = &self.plates[g];
             let gate = state.gates[g];
-            let most = (plate.max_speed * dt).min(0.1 * self.kernel.h) / plate.length;
+            let most = (plate.max_speed * dt).min(MOST_OF_A_PLATE * self.kernel.h) / plate.length;
             let change = (wanted[g] - gate.opening).clamp(-most, most);
             let mut rate = change / dt;
             let blocked = change < 0.0 && self.is_blocked(state, g);
@@ -196,7 +197,7 @@ impl<const D: usize> Solver<D> {
                         projection.map_or(a, |n| scale(dot(&n, &a), &n))
                     };
                     let push = if flat { seen(g) } else { g };
-                    let mut force = scale(-2.0 * self.normal_pressure()[i], &push);
+                    let mut force = scale(-2.0 * self.mean_pressure(i), &push);
                     if let Some(uneven) = self.uneven_pressure.get(i) {
                         force = add(&force, &scale(2.0, &crate::math::apply(uneven, &push)));
                     }

@@ -7,6 +7,7 @@
     reason = "textbook index notation: sums over components a, b, c = 0..D and over grains i, as in docs/theory.md"
 )]
 
+mod acoustic;
 mod barrier;
 mod constitutive;
 mod devices;
@@ -71,6 +72,7 @@ use crate::material::Material;
 use crate::math::{Arch, Geometry, Quad, Vector, Workers, norm};
 use crate::state::State;
 
+use acoustic::Acoustic;
 use barrier::Barrier;
 use constitutive::Response;
 use implicit::Viscous;
@@ -162,6 +164,7 @@ pub struct Solver<const D: usize> {
     pair_viscosity: Vec<f64>,
     inertial_number: Vec<f64>,
     prediction: Vec<Prediction<D>>,
+    acoustic: Acoustic<D>,
     viscous: Viscous<D>,
     friction: Friction<D>,
     paper_a: paper_a::Work<D>,
@@ -192,10 +195,7 @@ impl<const D: usize> Solver<D> {
         let spacing = numerics.spacing;
         let h = spacing * numerics.smoothing_ratio;
         let kernel = WendlandC2::new(h);
-        let barrier = Barrier::new(
-            numerics.spacing,
-            numerics.courant * h / numerics.sound_speed,
-        );
+        let barrier = Barrier::new(numerics.spacing, numerics.longest_step());
         let fixed_groups = walls.groups.len() - plates.len();
         for mover in &movers {
             mover.place(&mut walls, 0.0);
@@ -269,6 +269,7 @@ impl<const D: usize> Solver<D> {
             pair_viscosity: Vec::new(),
             inertial_number: Vec::new(),
             prediction: Vec::new(),
+            acoustic: Acoustic::default(),
             viscous: Viscous::default(),
             friction: Friction::default(),
             paper_a: paper_a::Work::default(),
@@ -329,7 +330,7 @@ impl<const D: usize> Solver<D> {
         if self.stays_asleep(state, inputs) {
             return Ok(self.sleep_until(state, end));
         }
-        let (dt, bound) = self.choose_step(state, end)?;
+        let (dt, bound) = self.choose_step(state, inputs.openings, end)?;
         match self.numerics.scheme {
             Scheme::Implicit => {}
             Scheme::PaperA(choices) => {
@@ -340,18 +341,18 @@ impl<const D: usize> Solver<D> {
             }
         }
         self.find_shift(state);
-        self.sweep_pressure(state, dt);
+        let acoustic_dt = self.step_sound(state, dt);
         let iterations = self.solve_viscous(state, dt)?;
         let impulse = state.impulse.clone();
         self.add_reactions(state, dt);
-        self.move_grains(state, dt)?;
+        self.move_grains(state, dt, acoustic_dt)?;
         on_move(&self.before, &state.grains);
         self.move_walls(state, dt);
         self.move_gates(state, inputs.openings, dt);
         self.drain(state);
         self.keep_inside(state)?;
         self.sweep_kinematics_in_valid_lists(state, false);
-        self.advance_density(state, dt)?;
+        self.advance_density(state, dt, acoustic_dt)?;
         let came = self.feed(state, inputs.rates, dt);
         if came {
             self.sweep_kinematics_in_valid_lists(state, true);
@@ -379,9 +380,14 @@ impl<const D: usize> Solver<D> {
     }
 
     /// The stable step, shortened so that equal steps end at `end`.
-    fn choose_step(&self, state: &State<D>, end: f64) -> Result<(f64, StepBound), SolverError> {
+    fn choose_step(
+        &self,
+        state: &State<D>,
+        wanted: &[f64],
+        end: f64,
+    ) -> Result<(f64, StepBound), SolverError> {
         let (stable, bound) = match self.numerics.scheme {
-            Scheme::Implicit => self.step_bound(state.time)?,
+            Scheme::Implicit => self.step_bound(state, wanted)?,
             Scheme::PaperA(_) => self.bound_paper_a(state.time)?,
             Scheme::PaperB(_) => self.bound_paper_b(state)?,
         };

@@ -7,8 +7,14 @@ use super::outputs::three;
 use super::{Solver, SolverError};
 
 impl<const D: usize> Solver<D> {
-    /// v and x to the end of the step (symplectic Euler), and what diffusion and shifting do to density before lists may reorder rows.
-    pub(super) fn move_grains(&mut self, state: &mut State<D>, dt: f64) -> Result<(), SolverError> {
+    /// v and x to the end of the step (symplectic Euler; `last` is its last acoustic step), and what diffusion and shifting do to
+    /// density before lists may reorder rows.
+    pub(super) fn move_grains(
+        &mut self,
+        state: &mut State<D>,
+        dt: f64,
+        last: f64,
+    ) -> Result<(), SolverError> {
         let (new, prediction) = (&self.viscous.velocity, &self.prediction);
         let is_bad = |i: usize| !new[i].iter().all(|c| c.is_finite());
         if let Some(bad) = self.workers.first_bad(new.len(), is_bad) {
@@ -17,11 +23,16 @@ impl<const D: usize> Solver<D> {
         let grains = &mut state.grains;
         self.before.clone_from(&grains.position);
         let (x, v) = (&mut grains.position, &mut grains.velocity);
-        let shift = &self.shift;
+        let (shift, way) = (&self.shift, self.acoustic.way());
         self.workers.both(x, v, |i, x, v| {
             *v = new[i];
             for k in 0..D {
-                x[k] += dt * v[k];
+                x[k] += last * v[k];
+            }
+            if let Some(way) = way.get(i) {
+                for k in 0..D {
+                    x[k] += way[k];
+                }
             }
             if let Some(shift) = shift.get(i) {
                 for k in 0..D {
@@ -34,7 +45,7 @@ impl<const D: usize> Solver<D> {
         let grains = &mut state.grains;
         let divergence = &self.shift_divergence;
         self.workers.each(&mut grains.density, |i, rho| {
-            *rho += dt * prediction[i].diffusion;
+            *rho += last * prediction[i].diffusion;
             if let Some(divergence) = divergence.get(i) {
                 *rho *= (-dt * divergence).exp();
             }

@@ -1,5 +1,7 @@
 //! Every numerical choice a scene may make, with the defaults of docs/theory.md.
 
+use crate::material::Material;
+
 use super::{PaperA, PaperB};
 
 /// The whole scheme: how forces are formed and how they are integrated in time.
@@ -40,6 +42,9 @@ pub struct Numerics {
     pub scheme: Scheme,
     /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.7, 0.5 of the reference schemes.
     pub courant: f64,
+    /// Acoustic steps to one internal step, 1 or 2 [1]: pressure and density take so many over the pairs of one place; default 1.
+    /// With more, the first yield iteration of a step starts from the plastic rate that its first guess has.
+    pub acoustic_steps: u32,
     /// Exact yield or plain cap.
     pub yield_form: YieldForm,
     /// Viscosity cap: eta <= cap_time mu_s p [s]. With the plain cap a plug creeps at up to 1/cap_time; default 20 c0/g.
@@ -72,6 +77,35 @@ pub struct Numerics {
 }
 
 impl Numerics {
+    /// Longest acoustic step, courant h/c0 [s].
+    #[must_use]
+    pub fn acoustic_step(&self) -> f64 {
+        self.courant * (self.spacing * self.smoothing_ratio) / self.sound_speed
+    }
+
+    /// Longest internal step that sound allows [s].
+    #[must_use]
+    pub fn longest_step(&self) -> f64 {
+        f64::from(self.acoustic_steps) * self.acoustic_step()
+    }
+
+    /// Most acoustic steps to one viscous solve in a scene of these materials: these steps leave out the sums of fluids, pores, bulk
+    /// friction and artificial viscosity, and the diffusion of density, one of all of them together, bears as much again.
+    #[must_use]
+    pub fn most_acoustic_steps<'a>(
+        scheme: Scheme,
+        (artificial_viscosity, density_diffusion): (f64, f64),
+        mut materials: impl Iterator<Item = &'a Material>,
+    ) -> u32 {
+        let is_dry = |m: &Material| !m.is_fluid() && !m.is_saturated() && m.bulk_friction == 0.0;
+        let may =
+            scheme == Scheme::Implicit && artificial_viscosity == 0.0 && materials.all(is_dry);
+        if !may {
+            return 1;
+        }
+        (1.0 / density_diffusion).clamp(1.0, 2.0) as u32
+    }
+
     /// Whether particles keep the stress of the exact yield.
     #[must_use]
     pub fn keeps_stress(&self) -> bool {

@@ -15,6 +15,7 @@ use crate::state::State;
 
 use super::Solver;
 use super::implicit::Viscous;
+use super::record::Record;
 
 /// How much more stress than it bears a particle may start a step with: no more than the pressure's own swing is lost.
 pub(super) const SPARE: f64 = 2.0;
@@ -32,6 +33,48 @@ impl<const D: usize> Solver<D> {
                 }
             }
         });
+    }
+
+    /// The same for the first solve of a step, with the plastic rate that the first guess has for the last step's where grains
+    /// yielded in the last step (docs/theory.md, E19): the penalty then holds back changes of acceleration and not of velocity.
+    ///
+    /// q changes by no more than its own size: what did not yield keeps its q of 0. There the guess is the pressure's noise, and sand
+    /// that ought to stop would not; what hits a wall would go on being slowed down, and be thrown back. Nor is this for what is
+    /// viscous itself, whose stress follows its rate: one step of it is exact as it is.
+    pub(super) fn expect_plastic_stress(&self, state: &State<D>, work: &mut Viscous<D>) {
+        let grains = &state.grains;
+        let Viscous { current, fixed, .. } = work;
+        fixed.resize(grains.stress.len(), [[0.0; D]; D]);
+        self.workers.each(fixed, |i, t| {
+            let (lambda, last) = (&grains.stress[i], &grains.plastic_rate[i]);
+            let material = &self.materials[grains.phase[i] as usize];
+            let (r, most) = (self.viscosity[i], self.geometry.size(last));
+            let mut q = *last;
+            if most > 0.0 && material.viscous.consistency == 0.0 {
+                let trial = self.trial(lambda, &current[i]);
+                let guessed = self.admissible(material, i, &trial).1;
+                let change: Tensor<D> =
+                    std::array::from_fn(|a| std::array::from_fn(|b| guessed[a][b] - last[a][b]));
+                let share = (most / self.geometry.size(&change)).min(1.0);
+                for a in 0..D {
+                    for b in 0..D {
+                        q[a][b] += share * change[a][b];
+                    }
+                }
+            }
+            for a in 0..D {
+                for b in 0..D {
+                    t[a][b] = lambda[a][b] - r * q[a][b];
+                }
+            }
+        });
+    }
+
+    /// lambda + r E of the velocity and linear stress of a record.
+    fn trial(&self, lambda: &Tensor<D>, record: &Record) -> Tensor<D> {
+        let whole = 1.0 / (1.0 - self.numerics.pair_viscosity_share);
+        let linear = record.stress::<D>();
+        std::array::from_fn(|a| std::array::from_fn(|b| lambda[a][b] + whole * linear[a][b]))
     }
 
     /// Cuts the stress that a step starts from to [`SPARE`] times what this step's pressure bears at the last plastic rate.
@@ -60,7 +103,6 @@ impl<const D: usize> Solver<D> {
 
     /// Steps 2 and 3 for every particle, from the linear stress of `work.current`.
     pub(super) fn project(&self, state: &mut State<D>, work: &Viscous<D>) {
-        let whole = 1.0 / (1.0 - self.numerics.pair_viscosity_share);
         let grains = &mut state.grains;
         let phase = &grains.phase;
         self.workers.both(
@@ -68,10 +110,7 @@ impl<const D: usize> Solver<D> {
             &mut grains.plastic_rate,
             |i, lambda, q| {
                 let material = &self.materials[phase[i] as usize];
-                let linear = work.current[i].stress::<D>();
-                let x: Tensor<D> = std::array::from_fn(|a| {
-                    std::array::from_fn(|b| lambda[a][b] + whole * linear[a][b])
-                });
+                let x = self.trial(lambda, &work.current[i]);
                 (*lambda, *q) = self.admissible(material, i, &x);
                 []
             },

@@ -19,6 +19,7 @@ fn numerics() -> Numerics {
         sound_speed: 20.0,
         scheme: Scheme::Implicit,
         courant: 0.5,
+        acoustic_steps: 1,
         yield_form: YieldForm::Exact { iterations: 1 },
         cap_time: 4.0,
         density_diffusion: 0.1,

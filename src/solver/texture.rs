@@ -32,8 +32,7 @@ pub(super) fn who_slides(
     materials: &[Material],
     rate: f64,
 ) -> Vec<bool> {
-    let step =
-        numerics.courant * numerics.spacing * numerics.smoothing_ratio / numerics.sound_speed;
+    let step = numerics.acoustic_step();
     // Viscosity at 1/s.
     let is_thin = |m: &Material| {
         m.flows() && step * rate * m.viscous.consistency < explicit::MOST * m.rest_density()

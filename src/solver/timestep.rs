@@ -1,12 +1,17 @@
 //! Bounds of the internal step, one function a bound (docs/theory.md, E13).
 
+use crate::state::State;
+
 use super::{Solver, SolverError, StepBound};
 
+/// Most that a plate moves in a step, over h [1].
+pub(super) const MOST_OF_A_PLATE: f64 = 0.1;
+
 impl<const D: usize> Solver<D> {
-    /// dt <= courant h / c0.
+    /// dt <= n courant h / c0 for n acoustic steps.
     #[must_use]
     pub fn acoustic_bound(&self) -> f64 {
-        self.numerics.courant * self.kernel.h / self.numerics.sound_speed
+        self.numerics.longest_step()
     }
 
     /// Neighbours and walls move at most 0.2 h against each other in a step.
@@ -22,10 +27,27 @@ impl<const D: usize> Solver<D> {
         }
     }
 
+    /// Plates move at most 0.1 h in a step: while one is to move a step is no longer, nor need it be shorter than an acoustic step.
+    fn gate_bound(&self, state: &State<D>, wanted: &[f64]) -> f64 {
+        let gates = state.gates.iter().zip(wanted).zip(&self.plates);
+        let moving = gates.filter(|((gate, wanted), _)| gate.opening != **wanted);
+        let fastest = moving.fold(0.0, |v, (_, plate)| f64::max(v, plate.max_speed));
+        if fastest > 0.0 {
+            (MOST_OF_A_PLATE * self.kernel.h / fastest).max(self.numerics.acoustic_step())
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// Largest stable step now, and what bounds it.
-    pub(super) fn step_bound(&self, time: f64) -> Result<(f64, StepBound), SolverError> {
+    pub(super) fn step_bound(
+        &self,
+        state: &State<D>,
+        wanted: &[f64],
+    ) -> Result<(f64, StepBound), SolverError> {
+        let time = state.time;
         let mut best = (self.acoustic_bound(), StepBound::Acoustic);
-        let motion = self.motion_bound();
+        let motion = self.motion_bound().min(self.gate_bound(state, wanted));
         if motion < best.0 {
             best = (motion, StepBound::Motion);
         }

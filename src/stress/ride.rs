@@ -62,7 +62,7 @@ impl<'a> Ride<'a> {
             .iter()
             .filter_map(|s| Some((component.variables().by_name(&name(s))?.reference, s)))
             .collect();
-        let n = &scene.numerics;
+        let internal_step = scene.numerics.longest_step();
         Ok(Self {
             case,
             scene,
@@ -73,7 +73,7 @@ impl<'a> Ride<'a> {
             over: false,
             cpu: 0.0,
             most_cpu,
-            internal_step: n.courant * n.smoothing_ratio * n.spacing / n.sound_speed,
+            internal_step,
             pieces: 1,
             told: Vec::new(),
         })

@@ -3,6 +3,7 @@
 //!
 //! Tolerances are those of the issue that asked for the case; each test says where its number comes from.
 
+mod acoustic_steps;
 mod axisymmetric;
 mod collapse;
 mod conservation;

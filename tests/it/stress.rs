@@ -86,6 +86,27 @@ fn kept_cases_pass_and_open_ones_fail() {
     }
 }
 
+/// Momentum, energy, gates, leaks, rest, waking, and the same bits after save and restore on other threads.
+#[test]
+fn kept_cases_of_dry_grains_pass_in_two_acoustic_steps() {
+    let mut passed = 0;
+    for kept in page::kept(&root().join("cases/stress")).unwrap() {
+        let mut case = kept.case;
+        let numerics = case.scene.get_mut("numerics").unwrap();
+        let numerics = numerics.as_table_mut().unwrap();
+        numerics.insert("acoustic_steps".to_owned(), toml::Value::Integer(2));
+        if case.scene().is_err() {
+            // Not dry, or with bulk friction, artificial viscosity or much diffusion of density.
+            continue;
+        }
+        let outcome = run::run(&case, &Bounds::default());
+        let failures = outcome.failures;
+        assert!(failures.is_empty(), "{}: {failures:?}", kept.name);
+        passed += 1;
+    }
+    assert!(passed >= 12, "{passed}");
+}
+
 #[test]
 fn the_page_in_the_repository_is_that_of_the_runs_in_it() {
     let stored = page::Stored::read(&root().join("benches/runs"), &root().join("cases/stress"));

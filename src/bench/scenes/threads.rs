@@ -54,9 +54,7 @@ pub fn threads(
         .with("numerics.spacing", spacing(particles))
         .without("gauges");
     let mut runner = Runner::new(&name, &scene)?;
-    let numerics = &runner.component.scene().numerics;
-    let bound =
-        numerics.courant * numerics.smoothing_ratio * numerics.spacing / numerics.sound_speed;
+    let bound = runner.component.scene().numerics.longest_step();
     let total = (warm_up + 2 * rounds * steps) as f64;
     for step in 0..warm_up {
         runner.step(bound)?;

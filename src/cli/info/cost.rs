@@ -47,12 +47,10 @@ pub(super) fn measure(component: &mut Component) -> Result<Measured, CliError> {
         wall: 0.0,
         cpu: 0.0,
     };
-    let numerics = &component.scene().numerics;
-    let acoustic =
-        numerics.courant * numerics.smoothing_ratio * numerics.spacing / numerics.sound_speed;
+    let longest = component.scene().numerics.longest_step();
     let watch = Stopwatch::start();
     // A communication step of a large scene may take an hour: a few internal steps say how far the budget reaches.
-    let mut room = FIRST_STEPS * acoustic;
+    let mut room = FIRST_STEPS * longest;
     while let Some(next) = next_point(component.time(), plan.step, plan.until) {
         let time = component.time();
         let next = next.min(time + room);
@@ -83,14 +81,17 @@ pub(super) fn measure(component: &mut Component) -> Result<Measured, CliError> {
 /// Step bounds, expected number of steps and expected cost, for people.
 pub(super) fn report(scene: &Scene, m: &Measured, threads: usize) -> String {
     let numerics = &scene.numerics;
-    let acoustic =
-        numerics.courant * numerics.smoothing_ratio * numerics.spacing / numerics.sound_speed;
+    let acoustic = numerics.acoustic_step();
+    let times = match numerics.acoustic_steps {
+        1 => String::new(),
+        n => format!(", {n} of them to an internal step"),
+    };
     let steps = m.steps.max(1) as f64;
     let mean = m.simulated / steps;
     let expected = scene.run.until / mean;
     let factor = scene.run.until / m.simulated;
     let mut text = format!(
-        "step       acoustic bound courant h / c0 = {acoustic:.3e} s; {}communication step {} s\n",
+        "step       acoustic bound courant h / c0 = {acoustic:.3e} s{times}; {}communication step {} s\n",
         match numerics.scheme {
             Scheme::Implicit => "viscosity is implicit and bounds nothing; ",
             Scheme::PaperA(_) | Scheme::PaperB(_) => {

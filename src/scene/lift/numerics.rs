@@ -29,6 +29,7 @@ impl Lift<'_> {
                 None if matches!(scheme, Some(Scheme::Implicit)) => 0.7,
                 None => 0.5,
             },
+            acoustic_steps: self.acoustic_steps(raw, scheme?, materials)?,
             yield_form,
             cap_time: match &raw.cap_time {
                 Some(given) => given.value.0,
@@ -62,6 +63,33 @@ impl Lift<'_> {
             jitter: raw.jitter.as_ref()?.value.0,
             seed: raw.seed.as_ref()?.value.0,
         })
+    }
+
+    /// As given, if the scene bears so many.
+    fn acoustic_steps(
+        &mut self,
+        raw: &RawNumerics,
+        scheme: Scheme,
+        materials: &[Option<NamedMaterial>],
+    ) -> Option<u32> {
+        let damping = raw.artificial_viscosity.as_ref()?.value.0;
+        let diffusion = raw.density_diffusion.as_ref()?.value.0;
+        let materials = materials.iter().flatten().map(|m| &m.material);
+        let most = Numerics::most_acoustic_steps(scheme, (damping, diffusion), materials);
+        let given = raw.acoustic_steps.as_ref()?;
+        let asked = u32::try_from(given.value.0).unwrap_or(u32::MAX);
+        if asked > most && scheme == Scheme::Implicit {
+            self.problems.report(
+                &given.place,
+                format!("{asked} acoustic steps"),
+                format!(
+                    "at most {most} here: 1 with fluids, saturated grains, bulk friction or artificial viscosity, else 1/density_diffusion"
+                ),
+                "leave acoustic_steps out",
+            );
+            return None;
+        }
+        Some(asked)
     }
 
     /// A few times the time scale c0/g of the scene; standard gravity stands in where there is none.

@@ -20,6 +20,7 @@ const ARTIFICIAL: &[SchemeWord] = &[SchemeWord::Implicit, SchemeWord::PaperA];
 
 fn keys(raw: &RawNumerics) -> Vec<Key<'_>> {
     vec![
+        ("acoustic_steps", IMPLICIT, place(&raw.acoustic_steps)),
         ("yield", IMPLICIT, place(&raw.r#yield)),
         ("yield_iterations", IMPLICIT, place(&raw.yield_iterations)),
         ("cap_time", IMPLICIT, place(&raw.cap_time)),

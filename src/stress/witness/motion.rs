@@ -56,7 +56,7 @@ impl Witness<'_> {
             return;
         }
         let h = n.smoothing_ratio * n.spacing;
-        let acoustic = n.courant * h / n.sound_speed;
+        let acoustic = n.longest_step();
         let motion = 0.2 * h / (6.0 * self.balance.speed(time)).max(f64::MIN_POSITIVE);
         let least = acoustic.min(motion).min(done.asked) / 3.0;
         let share = done.report.smallest_step / acoustic.min(done.asked);
