@@ -36,8 +36,10 @@ impl<const D: usize> Acoustic<D> {
 impl<const D: usize> Solver<D> {
     /// v* of the whole step in `self.prediction`, density at the start of its last acoustic step; the length of that step [s].
     pub(super) fn step_sound(&mut self, state: &mut State<D>, dt: f64) -> f64 {
-        // Steps are no longer than the bound but for rounding.
-        let count = (dt / self.numerics.acoustic_step() - 1e-9).ceil().max(1.0);
+        // Steps are no longer than the bound but for rounding, of which no further acoustic step may come.
+        let most = f64::from(self.numerics.acoustic_steps);
+        let count = (dt / self.numerics.acoustic_step() - 1e-9).ceil();
+        let count = count.clamp(1.0, most);
         let small = dt / count;
         self.sweep_pressure(state, small);
         let mut work = std::mem::take(&mut self.acoustic);

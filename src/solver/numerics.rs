@@ -40,7 +40,7 @@ pub struct Numerics {
     /// seed of this table, and none of the others; `PaperB` spacing, smoothing ratio, sound speed, Courant number, density
     /// diffusion, shifting, jitter and seed.
     pub scheme: Scheme,
-    /// Acoustic Courant number, dt = courant h / c0 [1]; default 0.7, 0.5 of the reference schemes.
+    /// Acoustic Courant number, an acoustic step is courant h / c0 [1]; default 0.7, 0.5 of the reference schemes.
     pub courant: f64,
     /// Acoustic steps to one internal step, 1 or 2 [1]: pressure and density take so many over the pairs of one place; default 1.
     /// With more, the first yield iteration of a step starts from the plastic rate that its first guess has.

@@ -8,7 +8,7 @@ use super::{Solver, SolverError, StepBound};
 pub(super) const MOST_OF_A_PLATE: f64 = 0.1;
 
 impl<const D: usize> Solver<D> {
-    /// dt <= n courant h / c0 for n acoustic steps.
+    /// dt <= n courant h / c0 for n acoustic steps [s].
     #[must_use]
     pub fn acoustic_bound(&self) -> f64 {
         self.numerics.longest_step()
