@@ -81,3 +81,22 @@ fn discharge_follows_the_opening_and_not_the_fill() {
         unit.get("gate.main.actual_opening")
     );
 }
+
+/// A plate moves a tenth of h in a step at most: steps follow it, else one of more than c0/7 (2.2 m/s here) would be late.
+#[test]
+fn a_quick_gate_opens_at_its_speed() {
+    for acoustic_steps in [1, 2] {
+        let numerics = format!("[numerics]\nacoustic_steps = {acoustic_steps}");
+        let quick = "max_speed = \"10 m/s\"";
+        let edits = [
+            ("[numerics]", numerics.as_str()),
+            ("max_speed = \"0.5 m/s\"", quick),
+        ];
+        let mut unit = Unit::new(&case("silo_gate", &edits));
+        unit.set("gate.main.opening", 1.0);
+        // 25 of its 50 mm.
+        unit.component.do_step(0.0, 2.5e-3).unwrap();
+        let opening = unit.get("gate.main.actual_opening");
+        assert!((opening - 0.5).abs() < 1e-9, "{opening}");
+    }
+}
