@@ -27,15 +27,13 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Plates move at most 0.1 h in a step: while one moves a step is no longer, down to a tenth of an acoustic step. A blocked
-    /// plate bounds nothing: in the step that frees it, it is only slower.
+    /// Plates move at most 0.1 h in a step: while one is to move a step is no longer, nor need it be shorter than an acoustic step.
     fn gate_bound(&self, state: &State<D>, wanted: &[f64]) -> f64 {
         let gates = state.gates.iter().zip(wanted).zip(&self.plates);
-        let moving = gates.filter(|((gate, wanted), _)| gate.opening != **wanted && !gate.blocked);
+        let moving = gates.filter(|((gate, wanted), _)| gate.opening != **wanted);
         let fastest = moving.fold(0.0, |v, (_, plate)| f64::max(v, plate.max_speed));
         if fastest > 0.0 {
-            (MOST_OF_A_PLATE * self.kernel.h / fastest)
-                .max(MOST_OF_A_PLATE * self.numerics.acoustic_step())
+            (MOST_OF_A_PLATE * self.kernel.h / fastest).max(self.numerics.acoustic_step())
         } else {
             f64::INFINITY
         }

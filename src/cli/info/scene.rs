@@ -159,9 +159,15 @@ fn parts(scene: &Scene) -> Vec<String> {
             slip(wall.slip)
         ));
     }
+    let plates = scene.numerics.plate_speed();
     for gate in &scene.gates {
+        let held = if gate.max_speed > plates {
+            format!(" asked, held to {plates:.3} m/s by its step of 0.1 h")
+        } else {
+            String::new()
+        };
         lines.push(format!(
-            "gate     {}: opening {} at the start, at most {} m/s, {}",
+            "gate     {}: opening {} at the start, at most {} m/s{held}, {}",
             gate.name,
             gate.start,
             gate.max_speed,
