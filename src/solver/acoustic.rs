@@ -17,6 +17,8 @@ use super::pair::Block;
 /// What the acoustic steps before the last one leave; empty where there is one.
 #[derive(Debug, Default)]
 pub(super) struct Acoustic<const D: usize> {
+    /// Acoustic steps of this step.
+    count: u32,
     /// Way that each particle went in them [m].
     way: Vec<Vector<D>>,
     /// Mean pressure of the step that momentum felt [Pa].
@@ -27,6 +29,11 @@ pub(super) struct Acoustic<const D: usize> {
 }
 
 impl<const D: usize> Acoustic<D> {
+    /// Acoustic steps of this step, 1 before the first one.
+    pub(super) fn count(&self) -> u32 {
+        self.count.max(1)
+    }
+
     /// What particles went before the last acoustic step [m]; empty if there was one.
     pub(super) fn way(&self) -> &[Vector<D>] {
         &self.way
@@ -43,6 +50,7 @@ impl<const D: usize> Solver<D> {
         let small = dt / count;
         self.sweep_pressure(state, small);
         let mut work = std::mem::take(&mut self.acoustic);
+        work.count = count as u32;
         work.way.clear();
         work.pressure.clear();
         if count > 1.0 {
@@ -51,7 +59,7 @@ impl<const D: usize> Solver<D> {
             work.velocity.resize(n, [0.0; D]);
             work.divergence.resize(n, 0.0);
             work.pressure.extend_from_slice(&self.pressure);
-            for done in 1..count as u32 {
+            for done in 1..work.count {
                 let (prediction, t) = (&self.prediction, f64::from(done) * small);
                 let a = &state.grains.viscous_acceleration;
                 self.workers.each(&mut work.velocity, |i, u| {

@@ -118,7 +118,7 @@ impl<const D: usize> Solver<D> {
                 let mut spent = 0;
                 self.cut_stress(state);
                 for done in 0..iterations {
-                    if done == 0 && self.numerics.acoustic_steps > 1 {
+                    if done == 0 && self.acoustic.count() > 1 {
                         self.expect_plastic_stress(state, work);
                     } else {
                         self.fix_plastic_stress(state, work);
@@ -279,7 +279,7 @@ impl<const D: usize> Solver<D> {
         });
         let fallen = fall * masses.sqrt();
         // A fall grows with the step by itself. What solves leave adds up, and here are fewer to a second.
-        let steps = f64::from(self.numerics.acoustic_steps);
+        let steps = f64::from(self.acoustic.count());
         let scale = steps * (moved.sqrt() - fallen).max(0.0) + RESTING * fallen;
         // The floor is the rounding of velocities that are all the same.
         self.numerics.solver_tolerance * scale + 1e-15 * self.numerics.sound_speed * total

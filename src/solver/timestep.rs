@@ -6,6 +6,9 @@ use super::{Solver, SolverError, StepBound};
 
 /// Most that a plate moves in a step, over h [1].
 pub(super) const MOST_OF_A_PLATE: f64 = 0.1;
+/// Largest relative speed over c0 in steps of several acoustic steps [1]: the Mach number for which c0 is chosen. What crashes
+/// faster compresses within one of them.
+const SLOW: f64 = 0.1;
 
 impl<const D: usize> Solver<D> {
     /// dt <= n courant h / c0 for n acoustic steps [s].
@@ -14,14 +17,19 @@ impl<const D: usize> Solver<D> {
         self.numerics.longest_step()
     }
 
-    /// Neighbours and walls move at most 0.2 h against each other in a step.
+    /// Neighbours and walls move at most 0.2 h against each other in a step, which is one acoustic step where they are fast.
     fn motion_bound(&self) -> f64 {
         let rows = &self.kinematics;
         let [v] = self
             .workers
             .largest(rows.len(), |i| [rows[i].relative_speed]);
         if v > 0.0 {
-            0.2 * self.kernel.h / v
+            let bound = 0.2 * self.kernel.h / v;
+            if v > SLOW * self.numerics.sound_speed {
+                bound.min(self.numerics.acoustic_step())
+            } else {
+                bound
+            }
         } else {
             f64::INFINITY
         }

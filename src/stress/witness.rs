@@ -123,7 +123,7 @@ impl<'a> Witness<'a> {
         self.check_leak(component, time);
         self.check_step_size(done, time);
         self.check_sleep(component, &now, wanted, time);
-        self.check_gates(&now, done, wanted, time - start, time);
+        self.check_gates(&now, wanted, time - start, time);
         self.check_rest(&totals, ledger.present, time);
         if self.drive.falls {
             self.check_fall(&totals, ledger.present, time);

@@ -13,7 +13,7 @@ pub(super) fn free(dice: &mut Dice) -> Draft {
     let speed = dice.log(0.05, 5.0);
     scale.speed = 2.0 * speed;
     let drive = drive(dice, scale.internal_step(), STEPS);
-    let time = drive.most_steps as f64 * scale.internal_step();
+    let time = scale.longest(drive.most_steps);
     let g = if dice.chance(0.5) { 0.0 } else { G };
     // Far enough for whatever is thrown out of the crash.
     let reach = short(4.0 * size + 6.0 * (speed + g * time) * time);
@@ -103,7 +103,7 @@ pub(super) fn fall(dice: &mut Dice) -> Draft {
     let up = dice.from(0.0, 2.0);
     scale.speed = up;
     let drive_of = drive(dice, scale.internal_step(), STEPS);
-    let time = drive_of.most_steps as f64 * scale.internal_step();
+    let time = scale.longest(drive_of.most_steps);
     let reach = short(2.0 * size + 2.0 * (up + G * time) * time);
     let mut scene = head("2", &[-reach, -reach], &[reach, reach], "");
     scene += &plain_numerics(dice, &scale, "");

@@ -42,6 +42,11 @@ impl Scale {
     pub(super) fn internal_step(&self) -> f64 {
         0.5 * 1.6 * self.spacing / (10.0 * self.expected())
     }
+
+    /// Longest time that so many internal steps cover: two acoustic steps each, and of courant 0.7 [s].
+    pub(super) fn longest(&self, steps: u64) -> f64 {
+        2.8 * steps as f64 * self.internal_step()
+    }
 }
 
 /// A table in TOML from keys and values that are TOML already.

@@ -6,7 +6,6 @@ use crate::scene::InputTarget;
 use super::Witness;
 use crate::stress::balance::Before;
 use crate::stress::checks::Check;
-use crate::stress::ride::Done;
 use crate::stress::walls;
 
 impl Witness<'_> {
@@ -45,12 +44,10 @@ impl Witness<'_> {
     pub(super) fn check_gates(
         &mut self,
         now: &Before,
-        done: &Done,
         wanted: &[(InputTarget, f64)],
         h: f64,
         time: f64,
     ) {
-        let hs = self.scene.numerics.smoothing_ratio * self.scene.numerics.spacing;
         for (input, value) in wanted {
             let InputTarget::GateOpening(i) = input else {
                 continue;
@@ -61,11 +58,8 @@ impl Witness<'_> {
             let moved = (to - from) * length;
             let most = gate.max_speed * h * (1.0 + 1e-9) + 1e-12 * length;
             // A plate that closes may wait for grains; one that opens has nothing in its way.
-            let steps = f64::from(done.report.substeps);
-            let least = ((value - from) * length)
-                .min(gate.max_speed * h)
-                .min(0.1 * hs * steps)
-                .max(0.0);
+            let speed = gate.max_speed.min(self.scene.numerics.plate_speed());
+            let least = ((value - from) * length).min(speed * h).max(0.0);
             let arrives = *value <= from || moved >= least * (1.0 - 1e-6) - 1e-9 * length;
             if !(0.0..=1.0).contains(&to) || moved.abs() > most || !arrives {
                 self.fail(
