@@ -107,6 +107,7 @@ impl<const D: usize> Solver<D> {
         self.grip_blocks(dt, &mut work.jacobi);
         self.find_explicit(state, dt, work);
         let limit = self.solver_limit(state, dt);
+        self.cut_slip(state);
         match self.numerics.yield_form {
             YieldForm::Capped => {
                 self.hold_friction(state, &mut work.held);

@@ -48,6 +48,8 @@ pub(super) struct FrictionRow<const D: usize> {
     spread: Tensor<D>,
     /// Penalty r [Pa s/m].
     penalty: f64,
+    /// mu_w p [Pa].
+    bears: f64,
 }
 
 /// Who sees walls with friction; empty in scenes without.
@@ -169,6 +171,7 @@ impl<const D: usize> Solver<D> {
             drive: [0.0; D],
             spread: [[0.0; D]; D],
             penalty: 0.0,
+            bears: 0.0,
         };
         let mut normal = [0.0; D];
         let (mut area, mut friction) = (0.0, 0.0);
@@ -203,8 +206,22 @@ impl<const D: usize> Solver<D> {
         let slip = norm(&row.slip(v));
         let pressure = self.effective_pressure()[row.i].max(0.0);
         let stick = friction.min(1.0) * self.numerics.cap_time / (0.5 * self.numerics.spacing);
+        row.bears = friction * pressure;
         row.penalty = pressure * stick.min(0.1 * friction / slip.max(f64::MIN_POSITIVE));
         row
+    }
+
+    /// Cuts the slip s that a step starts from where r s is more than the faces bear: at most a fifth of that is usual.
+    ///
+    /// Where a gate or a wall has stopped, r has grown with the slip gone, and r s of the old slip is out of all bounds.
+    pub(super) fn cut_slip(&self, state: &mut State<D>) {
+        for row in &self.friction.rows {
+            let s = &mut state.grains.wall_slip[row.i];
+            let size = row.penalty * norm(s);
+            if size > row.bears {
+                *s = scale(row.bears / size, s);
+            }
+        }
     }
 
     /// Notes T - r s of every row, what of the next solve's tractions does not follow the velocity [Pa].
