@@ -546,6 +546,18 @@ fn info_tells_what_a_case_holds_costs_and_leaves_out() {
 }
 
 #[test]
+fn info_tells_of_a_gate_that_is_held_below_its_speed() {
+    let desk = Desk::new();
+    let text = std::fs::read_to_string(small_silo()).unwrap();
+    assert!(!desk.ok(&["info", &small_silo()]).contains("held to"));
+    let quick = text.replace("[gates.main]", "[gates.main]\nmax_speed = \"100 m/s\"");
+    let path = desk.path("quick.toml");
+    std::fs::write(&path, quick).unwrap();
+    let told = desk.ok(&["info", path.to_str().unwrap()]);
+    assert!(told.contains("at most 100 m/s asked, held to "), "{told}");
+}
+
+#[test]
 fn schema_is_json_and_a_reader_may_go_away() {
     let desk = Desk::new();
     let schema: Value = serde_json::from_str(&desk.ok(&["schema"])).unwrap();
