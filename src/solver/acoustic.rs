@@ -6,7 +6,8 @@
 //!   u = v*(t) + t a,   x' += (dt/n) u,   rho *= exp(-(dt/n) div u),   v* += (dt/n) (g + a_p(rho))               (E18)
 //!
 //! The last is the step's own: its velocity is that of the viscous solve, and its div v that at the new places. Sound bounds dt/n,
-//! and lists, pairs, viscosity and motion are for dt. Sums are those of (E1) and (E7): momentum is kept pair by pair.
+//! and lists, pairs, viscosity and motion are for dt. Sums are those of (E1) and (E7): momentum is kept pair by pair. Rings take one:
+//! beside the axis they ring at a frequency that friction, which these steps leave out, has to damp.
 
 use crate::math::{Four, Lanes, Vector, in_lanes, trace};
 use crate::state::State;
@@ -106,9 +107,6 @@ impl<const D: usize> Solver<D> {
                         if let Some(w) = walls.next_if(|w| w.row as usize == row) {
                             *o += trace(&w.gradient(&u[i], true));
                         }
-                        if let Some(ring) = self.rings.get(i) {
-                            *o += ring.hoop * u[i][0] + ring.closing;
-                        }
                     }
                 );
             });
@@ -143,9 +141,6 @@ impl<const D: usize> Solver<D> {
                             for k in 0..D {
                                 push[k] -= 2.0 * self.pressure[i] * w.s[k];
                             }
-                        }
-                        if let Some(ring) = self.rings.get(i) {
-                            push[0] += self.pressure[i] * (ring.hoop + ring.axis);
                         }
                         let specific = self.specific_volume(state, i);
                         for k in 0..D {

@@ -43,8 +43,9 @@ pub struct Numerics {
     pub scheme: Scheme,
     /// Acoustic Courant number, an acoustic step is courant h / c0 [1]; default 0.7, 0.5 of the reference schemes.
     pub courant: f64,
-    /// Acoustic steps to one internal step, 1 or 2 [1]: pressure and density take so many over the pairs of one place; default 1.
-    /// With more, the first yield iteration of a step starts from the plastic rate that its first guess has.
+    /// Acoustic steps to one internal step where neighbours are slow, 1 or 2 [1]: pressure and density take so many over the pairs of
+    /// one place; default [`Self::most_acoustic_steps`]. With 2, the first yield iteration of a step starts from the plastic rate that
+    /// its first guess has.
     pub acoustic_steps: u32,
     /// Exact yield or plain cap.
     pub yield_form: YieldForm,
@@ -97,17 +98,20 @@ impl Numerics {
         f64::from(self.acoustic_steps) * self.acoustic_step()
     }
 
-    /// Most acoustic steps to one viscous solve in a scene of these materials: these steps leave out the sums of fluids, pores, bulk
+    /// Most acoustic steps to one viscous solve in a scene of these materials: these steps leave out the sums of rings, fluids, pores, bulk
     /// friction and artificial viscosity, and the diffusion of density, one of all of them together, bears as much again.
     #[must_use]
     pub fn most_acoustic_steps<'a>(
         scheme: Scheme,
+        is_axisymmetric: bool,
         (artificial_viscosity, density_diffusion): (f64, f64),
         mut materials: impl Iterator<Item = &'a Material>,
     ) -> u32 {
         let is_dry = |m: &Material| !m.is_fluid() && !m.is_saturated() && m.bulk_friction == 0.0;
-        let may =
-            scheme == Scheme::Implicit && artificial_viscosity == 0.0 && materials.all(is_dry);
+        let may = scheme == Scheme::Implicit
+            && !is_axisymmetric
+            && artificial_viscosity == 0.0
+            && materials.all(is_dry);
         if !may {
             return 1;
         }

@@ -17,7 +17,7 @@ pub(super) struct Prediction<const D: usize> {
     pub(super) velocity: Vector<D>,
     /// d rho/dt by diffusion [kg/(m^3 s)].
     pub(super) diffusion: f64,
-    /// how viscosity resists a particle that moves alone, walls not counted (docs/theory.md, E17) [Pa s/m^2]:
+    /// How viscosity resists a particle that moves alone, walls not counted (docs/theory.md, E17) [Pa s/m^2]:
     /// sum_j 2 s_p eta_ij c g g^T + (1 - s_p) eta_j (|g|^2 I + (1 - 2/D) g g^T).
     pub(super) resistance: Tensor<D>,
 }

@@ -6,17 +6,11 @@ use super::{Solver, SolverError, StepBound};
 
 /// Most that a plate moves in a step, over h [1].
 pub(super) const MOST_OF_A_PLATE: f64 = 0.1;
-/// Largest relative speed over c0 in steps of several acoustic steps [1]: the Mach number for which c0 is chosen. What crashes
-/// faster compresses within one of them.
-const SLOW: f64 = 0.1;
+/// Largest relative speed over c0 in steps of several acoustic steps [1], of what rests, creeps and begins to move. What flows
+/// fast or crashes compresses within one of them (docs/decisions/014-two-acoustic-steps.md).
+const SLOW: f64 = 0.03;
 
 impl<const D: usize> Solver<D> {
-    /// dt <= n courant h / c0 for n acoustic steps [s].
-    #[must_use]
-    pub fn acoustic_bound(&self) -> f64 {
-        self.numerics.longest_step()
-    }
-
     /// Neighbours and walls move at most 0.2 h against each other in a step, which is one acoustic step where they are fast.
     fn motion_bound(&self) -> f64 {
         let rows = &self.kinematics;
@@ -54,12 +48,12 @@ impl<const D: usize> Solver<D> {
         wanted: &[f64],
     ) -> Result<(f64, StepBound), SolverError> {
         let time = state.time;
-        let mut best = (self.acoustic_bound(), StepBound::Acoustic);
+        let mut best = (self.numerics.longest_step(), StepBound::Acoustic);
         let motion = self.motion_bound().min(self.gate_bound(state, wanted));
         if motion < best.0 {
             best = (motion, StepBound::Motion);
         }
-        let smallest = 1e-6 * self.acoustic_bound();
+        let smallest = 1e-6 * self.numerics.longest_step();
         if best.0 < smallest {
             return Err(SolverError::StepCollapsed {
                 time,

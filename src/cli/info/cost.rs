@@ -84,7 +84,7 @@ pub(super) fn report(scene: &Scene, m: &Measured, threads: usize) -> String {
     let acoustic = numerics.acoustic_step();
     let times = match numerics.acoustic_steps {
         1 => String::new(),
-        n => format!(", {n} of them to an internal step"),
+        n => format!(", {n} of them to an internal step where neighbours are slow"),
     };
     let steps = m.steps.max(1) as f64;
     let mean = m.simulated / steps;

@@ -65,7 +65,7 @@ impl Lift<'_> {
         })
     }
 
-    /// As given, if the scene bears so many.
+    /// As many as are asked for, if the scene bears so many; as many as it bears if none are.
     fn acoustic_steps(
         &mut self,
         raw: &RawNumerics,
@@ -75,15 +75,22 @@ impl Lift<'_> {
         let damping = raw.artificial_viscosity.as_ref()?.value.0;
         let diffusion = raw.density_diffusion.as_ref()?.value.0;
         let materials = materials.iter().flatten().map(|m| &m.material);
-        let most = Numerics::most_acoustic_steps(scheme, (damping, diffusion), materials);
-        let given = raw.acoustic_steps.as_ref()?;
+        let most = Numerics::most_acoustic_steps(
+            scheme,
+            self.axisymmetric(),
+            (damping, diffusion),
+            materials,
+        );
+        let Some(given) = &raw.acoustic_steps else {
+            return Some(most);
+        };
         let asked = u32::try_from(given.value.0).unwrap_or(u32::MAX);
         if asked > most && scheme == Scheme::Implicit {
             self.problems.report(
                 &given.place,
                 format!("{asked} acoustic steps"),
                 format!(
-                    "at most {most} here: 1 with fluids, saturated grains, bulk friction or artificial viscosity, else 1/density_diffusion"
+                    "at most {most} here: 1 in axisymmetric scenes and with fluids, saturated grains, bulk friction or artificial viscosity, else 1/density_diffusion"
                 ),
                 "leave acoustic_steps out",
             );

@@ -87,8 +87,8 @@ table! {
         optional scheme: SchemeWord, default "implicit";
         /// Acoustic Courant number: acoustic step over h/c0; if left out, 0.7, or 0.5 with the schemes paper_a and paper_b.
         optional courant: Ratio, in Range::above_to(0.0, 1.0);
-        /// Acoustic steps to an internal step: pressure and density take so many to one solve of friction. 2 takes 30 % less time in cases/column_collapse.toml and is less tried (docs/decisions/014-two-acoustic-steps.md); it is for scenes of dry grains alone, without bulk friction, artificial viscosity and a density_diffusion above 0.5.
-        optional acoustic_steps: Whole, in Range::within(1.0, 2.0), default 1;
+        /// Acoustic steps to an internal step, where neighbours and walls are slower than 0.03 c0 against each other: pressure and density take so many to one solve of friction (docs/decisions/014-two-acoustic-steps.md). If left out, 2 in planar scenes and in space where all is dry grains without bulk friction, artificial viscosity and a density_diffusion above 0.5; others take 1.
+        optional acoustic_steps: Whole, in Range::within(1.0, 2.0);
         /// Scheme paper_a: the largest yield stress that is expected, tau_0; if left out, tan(static_friction_angle) times the weight of the deepest material.
         optional reference_yield_stress: Pressure, in Range::above(0.0);
         /// Scheme paper_a: scaling time m_0 of the regularised viscosity at that stress. Longer creeps less and takes smaller steps.

@@ -66,7 +66,7 @@ impl<const D: usize> Solver<D> {
         } else {
             (self.numerics.courant * acoustic, StepBound::Acoustic)
         };
-        let smallest = 1e-6 * self.acoustic_bound();
+        let smallest = 1e-6 * self.numerics.longest_step();
         // Written so that a bound that is not a number is refused too.
         if bound.0 >= smallest {
             return Ok(bound);

@@ -84,7 +84,7 @@ impl<const D: usize> Solver<D> {
     ) -> Result<(f64, StepBound), SolverError> {
         let (h, courant) = (self.kernel.h, self.numerics.courant);
         let grains = &state.grains;
-        let mut best = (self.acoustic_bound(), StepBound::Acoustic);
+        let mut best = (self.numerics.longest_step(), StepBound::Acoustic);
         let mut offer = |step: f64, bound: StepBound| {
             // One that is not a number is kept, and refused below.
             if step < best.0 || step.is_nan() {
@@ -115,7 +115,7 @@ impl<const D: usize> Solver<D> {
                 offer(step, StepBound::Viscous);
             }
         }
-        let smallest = 1e-6 * self.acoustic_bound();
+        let smallest = 1e-6 * self.numerics.longest_step();
         // Written so that a bound that is not a number is refused too.
         if best.0 >= smallest {
             return Ok(best);

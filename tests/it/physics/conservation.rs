@@ -117,24 +117,10 @@ fn kinetic_energy(state: &State<2>) -> f64 {
         .sum()
 }
 
-/// The same with two acoustic steps: their pressure and places keep it pair by pair, too.
-#[test]
-fn an_isolated_body_keeps_its_momentum_in_two_acoustic_steps() {
-    let mut scene = block([0.0, 0.0]);
-    scene.numerics.acoustic_steps = 2;
-    let (start, end) = run(&scene, 0.1);
-    assert!(end.steps > 50 && end.iterations > 20);
-    let ((before, size), (after, _)) = (momentum(&start), momentum(&end));
-    for (a, b) in before.iter().zip(after) {
-        assert!((a - b).abs() < 1e-12 * size, "{before:?} {after:?}");
-    }
-    assert!(kinetic_energy(&end) < 0.9 * kinetic_energy(&start));
-}
-
 /// 1e-12 of sum m |v| over some 100 steps: rounding, although the solve stops at 1e-2.
 #[test]
 fn an_isolated_body_keeps_its_momentum_at_a_loose_tolerance() {
-    let (start, end) = run(&block([0.0, 0.0]), 0.05);
+    let (start, end) = run(&block([0.0, 0.0]), 0.1);
     assert!(
         end.steps > 50 && end.iterations > 20,
         "{} steps, {} iterations",
