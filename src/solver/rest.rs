@@ -2,7 +2,7 @@
 //!
 //! Quiet is a step in which the root mean square of speeds is below 3e-6 c0 (3e-5 of the speed of a fall from the scene's
 //! height, as c0 is chosen), no particle is faster than 1e-4 c0, gates are where they should be, and nothing flows in.
-//! A window is [`QUIET_STEPS`] acoustic steps of them in a row. Once forces on walls agree in two windows that follow each other, the
+//! A window is [`QUIET_STEPS`] of them in a row. Once forces on walls agree in two windows that follow each other, the
 //! particles stand still and time passes in one step, forces as they were: grains come to rest long before friction has
 //! settled what each wall carries (docs/theory.md, "Sleep").
 //! A gate told to move or an inflow told to run wakes the scene. Scenes with moving walls or without walls never sleep, nor do
@@ -15,7 +15,7 @@ use crate::state::{Grains, RestState, State};
 
 use super::{Numerics, Scheme, Solver, StepBound, StepInputs, SubStep};
 
-/// Quiet acoustic steps of a window: a wave crosses 100 h meanwhile.
+/// Quiet steps of a window: friction settles by solves, and a wave crosses 100 h meanwhile or more.
 const QUIET_STEPS: u32 = 200;
 
 /// Most by which a steady force on a wall changes from one window to the next, over itself [1].
@@ -131,7 +131,7 @@ impl<const D: usize> Solver<D> {
                 sum[k] += after[k] - before[k];
             }
         }
-        if rest.quiet_steps < QUIET_STEPS / self.numerics.acoustic_steps {
+        if rest.quiet_steps < QUIET_STEPS {
             return;
         }
         let time = rest.quiet_time;
