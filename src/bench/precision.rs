@@ -42,12 +42,13 @@ impl Setting {
 }
 
 /// Choices tried beside the defaults at one resolution.
-const CHANGES: [(&str, &str); 16] = [
+const CHANGES: [(&str, &str); 17] = [
     ("smoothing_ratio", "1.3"),
     ("smoothing_ratio", "2.0"),
     ("courant", "0.25"),
     ("courant", "0.5"),
     ("courant", "0.9"),
+    ("acoustic_steps", "1"),
     ("solver_tolerance", "1e-2"),
     ("solver_tolerance", "1e-6"),
     ("yield_iterations", "3"),

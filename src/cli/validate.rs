@@ -31,6 +31,9 @@ pub(super) struct Args {
     /// Runs side by side, each on one thread; 0 means all cores
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(0..=256))]
     jobs: u16,
+    /// Threads of each run, for runs one after the other; 0 means all cores. Results do not depend on it; CPU times are those of all threads
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "jobs", value_parser = clap::value_parser!(u16).range(0..=256))]
+    threads: u16,
     /// Coarser and fewer runs that take a minute: to see that all works, not to judge
     #[arg(long)]
     quick: bool,
@@ -59,6 +62,7 @@ Examples:
   sandgate validate --list
   sandgate validate columns --jobs 2
   sandgate validate silted_depths --members _6mm
+  sandgate validate silted_dams --members paper_b_66_3mm --threads 0
   sandgate validate --quick";
 
 /// Wall time between saves of a run under way, and between lines where nobody watches a terminal.
@@ -158,6 +162,14 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     say(&lines.join("\n"))
 }
 
+/// So many, or as many as there are cores for 0.
+fn or_all_cores(n: u16) -> usize {
+    match n {
+        0 => super::clock::cores(),
+        n => usize::from(n),
+    }
+}
+
 /// Runs what is not finished.
 fn run_missing(args: &Args, store: &Store, members: &[(&str, Member)]) -> Result<(), CliError> {
     let mut jobs = Vec::new();
@@ -179,10 +191,8 @@ fn run_missing(args: &Args, store: &Store, members: &[(&str, Member)]) -> Result
     let tally = Mutex::new(Tally::new(weights));
     let plan = queue::Plan {
         store,
-        threads: match args.jobs {
-            0 => super::clock::cores(),
-            n => usize::from(n),
-        },
+        jobs: or_all_cores(args.jobs),
+        threads: or_all_cores(args.threads),
         saved_every: SAVED_EVERY,
         stop: &stop,
     };

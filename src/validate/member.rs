@@ -1,11 +1,11 @@
 //! One member: its component stepped from start to end, or on from what was saved, recording as its plan says.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
 
-use cpu_time::ThreadTime;
+use cpu_time::{ProcessTime, ThreadTime};
 
-use super::{Error, Member, Outcome, Recording, Snapshot, Store};
+use super::{Error, Member, Outcome, Recording, Snapshot, Store, queue};
 use crate::component::{Component, ValueReference, next_point};
 use crate::scene::{self, Scene};
 
@@ -61,22 +61,27 @@ impl Job<'_> {
         Ok(self.member.relative_cost * particles as f64 * scene.run.until / step)
     }
 
-    /// Runs the member to its end and keeps it, or saves it on the way when `stop` becomes true. Computes on the calling
-    /// thread only, so that members side by side do not share cores and CPU times mean something.
+    /// Runs the member to its end and keeps it, or saves it on the way when the plan's `stop` becomes true. With one thread it
+    /// computes on the calling one only, so that members side by side do not share cores and CPU times mean something.
     ///
-    /// `saved_every`: wall time between saves. `watch` sees every communication point.
+    /// `watch` sees every communication point.
     ///
     /// # Errors
     /// [`Error::Defect`], [`Error::File`]. A step that fails is no error but a recording that says so.
     pub fn run(
         &self,
-        store: &Store,
-        saved_every: Duration,
-        stop: &AtomicBool,
+        plan: queue::Plan,
         watch: &(dyn Fn(Progress) + Sync),
     ) -> Result<Recording, Error> {
+        let queue::Plan {
+            store,
+            saved_every,
+            stop,
+            threads,
+            ..
+        } = plan;
         let scene = self.scene()?;
-        let mut run = match Run::start(self, store, &scene)? {
+        let mut run = match Run::start(self, store, &scene, threads)? {
             Ok(run) => run,
             Err(failed) => {
                 store.keep(self.study, self.member, &failed)?;
@@ -117,11 +122,37 @@ struct Run {
     recording: Recording,
     /// Kept variables: name, handle, number of values.
     kept: Vec<(String, ValueReference, usize)>,
+    threads: usize,
+}
+
+/// CPU time from a moment on: of the calling thread, where it computes alone, else of all threads.
+struct CpuClock(Option<ThreadTime>, Option<ProcessTime>);
+
+impl CpuClock {
+    fn start(threads: usize) -> Self {
+        if threads == 1 {
+            Self(ThreadTime::try_now().ok(), None)
+        } else {
+            Self(None, ProcessTime::try_now().ok())
+        }
+    }
+
+    /// [s]; 0 where the system does not tell.
+    fn elapsed(&self) -> f64 {
+        let own = self.0.and_then(|c| c.try_elapsed().ok());
+        let all = self.1.and_then(|c| c.try_elapsed().ok());
+        own.or(all).unwrap_or_default().as_secs_f64()
+    }
 }
 
 impl Run {
     /// At the start, or where an earlier run saved it; the inner error is a recording of a scene that cannot be built.
-    fn start(job: &Job, store: &Store, scene: &Scene) -> Result<Result<Self, Recording>, Error> {
+    fn start(
+        job: &Job,
+        store: &Store,
+        scene: &Scene,
+        threads: usize,
+    ) -> Result<Result<Self, Recording>, Error> {
         let mut recording = Recording::empty(store.key(job.member));
         let mut component = match Component::new(scene) {
             Ok(component) => component,
@@ -130,37 +161,41 @@ impl Run {
                 return Ok(Err(recording));
             }
         };
+        component.set_threads(threads);
         let kept = kept(job, &component)?;
         if let Some((saved, state)) = store.part(job.study, job.member)
             && component.restore(&state).is_ok()
         {
-            let recording = saved;
+            let mut recording = saved;
+            recording.threads = recording.threads.max(threads);
             return Ok(Ok(Self {
                 component,
                 recording,
                 kept,
+                threads,
             }));
         }
         component.initialize(0.0, None).map_err(|e| job.defect(e))?;
         recording.particles = component.statistics().particles;
+        recording.threads = threads;
         let mut run = Self {
             component,
             recording,
             kept,
+            threads,
         };
         run.sample(job, scene.run.step).map_err(|e| job.defect(e))?;
         Ok(Ok(run))
     }
 
     fn step_to(&mut self, next: f64, step: f64, job: &Job) -> Result<(), String> {
-        let clock = ThreadTime::try_now().ok();
+        let clock = CpuClock::start(self.threads);
         let time = self.component.time();
         let (references, values) = self.component.scheduled(time);
         let set = self.component.set(&references, &values);
         set.map_err(|e| e.to_string())?;
         let stepped = self.component.do_step(time, next - time);
-        let spent = clock.and_then(|c| c.try_elapsed().ok());
-        self.recording.cpu += spent.unwrap_or_default().as_secs_f64();
+        self.recording.cpu += clock.elapsed();
         stepped.map_err(|e| e.to_string())?;
         self.sample(job, step)
     }

@@ -272,7 +272,7 @@ pub fn index(folder: &Path, studies: &[Study]) -> String {
          - **falls short**: outside of it.\n\
          - **reported**: not judged: another model, a law for another geometry, or a figure for information.\n\n\
          `sources` is a hash of all source files that can change a result, also in the program that ran them: runs of\n\
-         other sources are computed again. CPU times are of one thread a run. The published data and where they come from:\n\
+         other sources are computed again. CPU times are of one thread a run, unless its page says otherwise. The published data and where they come from:\n\
          [cases/reference](../../cases/reference/SOURCE.md).\n",
         text::markdown(&table)
     )

@@ -26,6 +26,8 @@ pub struct Plan<'a> {
     /// Where recordings are kept.
     pub store: &'a Store,
     /// Jobs side by side, at least 1.
+    pub jobs: usize,
+    /// Threads of each; more than one only where jobs run one after the other, so that their CPU time is told apart.
     pub threads: usize,
     /// Wall time between saves of a job.
     pub saved_every: Duration,
@@ -55,7 +57,7 @@ pub fn run(plan: Plan, jobs: &[Job], watch: &(dyn Fn(usize, Event) + Sync)) -> R
         }
     };
     std::thread::scope(|scope| {
-        for _ in 1..plan.threads.min(jobs.len()) {
+        for _ in 1..plan.jobs.min(jobs.len()) {
             scope.spawn(work);
         }
         work();
@@ -72,7 +74,7 @@ fn one(plan: Plan, job: &Job, watch: &(dyn Fn(Event) + Sync)) -> Result<Event, E
         return Ok(Event::Kept);
     }
     let tell = |progress| watch(Event::Advanced(progress));
-    let recording = job.run(plan.store, plan.saved_every, plan.stop, &tell)?;
+    let recording = job.run(plan, &tell)?;
     Ok(match recording.outcome {
         Outcome::Running => Event::Saved,
         outcome => Event::Ended(outcome, recording.cpu),

@@ -51,8 +51,15 @@ pub struct Recording {
     pub steps: u64,
     /// Iterations of viscous solves.
     pub iterations: u64,
-    /// CPU time of stepping [s].
+    /// CPU time of stepping, of all its threads [s].
     pub cpu: f64,
+    /// Most threads that it had.
+    #[serde(default = "one")]
+    pub threads: usize,
+}
+
+fn one() -> usize {
+    1
 }
 
 impl Recording {
@@ -70,6 +77,7 @@ impl Recording {
             steps: 0,
             iterations: 0,
             cpu: 0.0,
+            threads: 1,
         }
     }
 

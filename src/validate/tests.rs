@@ -108,27 +108,28 @@ impl Desk {
     /// Runs all members; answers each job's last event and how many communication points it stepped.
     fn run(
         &self,
-        threads: usize,
+        jobs: usize,
         stop: &AtomicBool,
         after: Option<usize>,
     ) -> Vec<(Option<Event>, usize)> {
         let members = members(Effort::Full).unwrap();
-        let jobs: Vec<Job> = members
+        let list: Vec<Job> = members
             .iter()
             .map(|member| Job {
                 study: "drops",
                 member,
             })
             .collect();
-        let seen = Mutex::new(vec![(None, 0); jobs.len()]);
+        let seen = Mutex::new(vec![(None, 0); list.len()]);
         let total = Mutex::new(0);
         let plan = queue::Plan {
             store: &self.store,
-            threads,
+            jobs,
+            threads: if jobs == 1 { 2 } else { 1 },
             saved_every: Duration::ZERO,
             stop,
         };
-        queue::run(plan, &jobs, &|index, event| {
+        queue::run(plan, &list, &|index, event| {
             let mut seen = seen.lock().unwrap();
             if let Event::Advanced(_) = event {
                 seen[index].1 += 1;
@@ -154,9 +155,21 @@ fn run_all(desk: &Desk) -> Vec<(Option<Event>, usize)> {
     desk.run(1, &AtomicBool::new(false), None)
 }
 
-/// Everything but the clock.
+/// One job on one thread.
+fn alone<'a>(store: &'a Store, saved_every: Duration, stop: &'a AtomicBool) -> queue::Plan<'a> {
+    queue::Plan {
+        store,
+        jobs: 1,
+        threads: 1,
+        saved_every,
+        stop,
+    }
+}
+
+/// Everything but the clock and what it counted.
 fn without_clock(mut recording: Recording) -> Recording {
     recording.cpu = 0.0;
+    recording.threads = 1;
     recording
 }
 
@@ -244,11 +257,13 @@ fn a_killed_study_goes_on_from_its_last_save() {
             std::fs::copy(part, there).unwrap();
         }
     };
-    let whole = job.run(&desk.store, Duration::ZERO, &stop, &copy).unwrap();
+    let whole = job
+        .run(alone(&desk.store, Duration::ZERO, &stop), &copy)
+        .unwrap();
     let points = Mutex::new(0);
     let count = |_| *points.lock().unwrap() += 1;
     let resumed = job
-        .run(&killed.store, Duration::ZERO, &stop, &count)
+        .run(alone(&killed.store, Duration::ZERO, &stop), &count)
         .unwrap();
     // Saved at the start of the fifth step.
     assert_eq!(*points.lock().unwrap(), 6);
@@ -265,7 +280,7 @@ fn a_part_cut_short_or_of_other_sources_starts_again() {
         member: &member,
     };
     let stop = AtomicBool::new(true);
-    job.run(&desk.store, Duration::ZERO, &stop, &|_| {})
+    job.run(alone(&desk.store, Duration::ZERO, &stop), &|_| {})
         .unwrap();
     let path = desk.store.path("drops", &member, "part");
     let bytes = std::fs::read(&path).unwrap();
@@ -276,7 +291,7 @@ fn a_part_cut_short_or_of_other_sources_starts_again() {
     stop.store(false, Ordering::SeqCst);
     let points = Mutex::new(0);
     let done = job
-        .run(&desk.store, Duration::MAX, &stop, &|_| {
+        .run(alone(&desk.store, Duration::MAX, &stop), &|_| {
             *points.lock().unwrap() += 1
         })
         .unwrap();
@@ -321,7 +336,9 @@ fn a_scene_that_fails_is_kept_as_failed_with_its_reason() {
         member: &member,
     };
     let stop = AtomicBool::new(false);
-    let recording = job.run(&desk.store, Duration::MAX, &stop, &|_| {}).unwrap();
+    let recording = job
+        .run(alone(&desk.store, Duration::MAX, &stop), &|_| {})
+        .unwrap();
     assert!(
         matches!(&recording.outcome, Outcome::Failed(why) if !why.is_empty()),
         "{:?}",
@@ -344,7 +361,10 @@ fn a_variable_that_is_not_there_is_a_defect_of_the_study() {
         member: &member,
     };
     let error = job
-        .run(&desk.store, Duration::MAX, &AtomicBool::new(false), &|_| {})
+        .run(
+            alone(&desk.store, Duration::MAX, &AtomicBool::new(false)),
+            &|_| {},
+        )
         .unwrap_err();
     assert!(error.to_string().contains("gauge.nowhere.depth"), "{error}");
 }

@@ -47,9 +47,11 @@ pub fn against_paper_a(
         spent += paper_a.cpu.last().copied().unwrap_or(f64::INFINITY);
         watch((spent / budget).max(paper_a.component.time() / latest));
     }
-    let ends = 1..=paper_a.cpu.len();
-    let windows = ends.clone().filter(|n| n % 10 == 0).map(|n| {
-        let of = |cpu: &[f64]| cpu[n - 10..n].iter().sum::<f64>();
+    let steps = paper_a.cpu.len();
+    // Of 20 ms, or longer ones where that would be many.
+    let window = 10 * steps.div_ceil(100).max(1);
+    let windows = (1..=steps).filter(|n| n % window == 0).map(|n| {
+        let of = |cpu: &[f64]| cpu[n - window..n].iter().sum::<f64>();
         (n as f64 * STEP, of(&paper_a.cpu) / of(&default.cpu))
     });
     Ok(AgainstPaperA {

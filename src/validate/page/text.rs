@@ -122,11 +122,16 @@ pub(super) fn markdown(table: &Table) -> String {
 fn how(study: &Study, found: &Found, summary: &Summary) -> String {
     let quick = if summary.quick { " --quick" } else { "" };
     let (there, all) = summary.members;
+    let threads = found.there().map(|(_, r)| r.threads).max().unwrap_or(1);
     let mut text = format!(
-        "## How it was computed\n\n`sandgate validate {}{quick}`, {there} of {all} runs, {} s of CPU time, one thread a \
+        "## How it was computed\n\n`sandgate validate {}{quick}`, {there} of {all} runs, {} s of CPU time, {} a \
          run; at most {} particles. Sources (hash of what can change a result): {}.\n\n",
         study.name,
         number(summary.cpu),
+        match threads {
+            0 | 1 => "one thread".to_owned(),
+            n => format!("up to {n} threads"),
+        },
         summary.particles,
         if summary.sources.is_empty() {
             "none".to_owned()
