@@ -63,8 +63,8 @@ until = "1 s"
 "#;
 
 /// Steps of the run; before the last part nothing is asked for.
-const STEPS: usize = 100;
-const REST: std::ops::Range<usize> = 0..70;
+const STEPS: usize = 130;
+const REST: std::ops::Range<usize> = 0..100;
 const H: f64 = 0.01;
 
 fn component() -> Component {
