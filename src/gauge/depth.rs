@@ -6,6 +6,7 @@
 //! is beside them, so that a line along a wall reads what a line in the middle reads. Far from walls S = S_m.
 //! Where there is no material at all, S = 0.
 
+use super::nearby::Nearby;
 use super::{Reading, Validity, View, along};
 
 /// Shepard sum of material below which a place counts as dry: a lone grain at the place itself gives 0.2.
@@ -40,18 +41,19 @@ impl<const D: usize> DepthLine<D> {
 
     /// Depth [m], or why there is none.
     pub(super) fn depth(&self, view: &View<D>) -> Result<f64, Validity> {
-        let filled = self.filled(view)?;
+        let mut near = Nearby::new(view);
+        let filled = self.filled(view, &mut near)?;
         if filled == self.count(view) {
             return Ok(self.length);
         }
-        Ok(self.crossing(view, filled))
+        Ok(self.crossing(view, &near, filled))
     }
 
     /// The height above place `filled` where S falls below 0.5 [m], S >= 0.5 there.
     ///
     /// By false position, the weight of the end that stays halved (Illinois): S is as smooth as the kernel.
-    fn crossing(&self, view: &View<D>, filled: usize) -> f64 {
-        let excess = |height: f64| self.fill(view, height) - 0.5;
+    fn crossing(&self, view: &View<D>, near: &Nearby<D>, filled: usize) -> f64 {
+        let excess = |height: f64| self.fill(near, height) - 0.5;
         let (mut low, mut high) = (self.height(view, filled), self.height(view, filled + 1));
         let (mut above, mut below) = (excess(low), excess(high));
         let fine = 1e-12 * view.spacing;
@@ -84,21 +86,21 @@ impl<const D: usize> DepthLine<D> {
 
     /// Whether the depth is at least `least` [m], for less than what the depth itself costs.
     pub(super) fn is_deep(&self, view: &View<D>, least: f64) -> bool {
-        self.filled(view)
+        self.filled(view, &mut Nearby::new(view))
             .is_ok_and(|k| self.height(view, k) >= least)
     }
 
-    /// Number of the highest place with S >= 0.5, or why there is none.
-    fn filled(&self, view: &View<D>) -> Result<usize, Validity> {
+    /// Number of the highest place with S >= 0.5, or why there is none. `near` is then what it and the next place see.
+    fn filled(&self, view: &View<D>, near: &mut Nearby<D>) -> Result<usize, Validity> {
         if view.is_outside(&self.foot) {
             return Err(Validity::Outside);
         }
         if view.is_covered(&along(&self.foot, &self.up, view.spacing)) {
             return Err(Validity::Blocked);
         }
-        let filled = self.highest_filled(view).ok_or(Validity::Empty)?;
+        let filled = self.highest_filled(view, near).ok_or(Validity::Empty)?;
         let at = along(&self.foot, &self.up, self.height(view, filled));
-        if view.material_sum(&at) < DRY {
+        if near.material_sum(&at) < DRY {
             return Err(Validity::Empty);
         }
         Ok(filled)
@@ -117,7 +119,7 @@ impl<const D: usize> DepthLine<D> {
     /// Number of the highest place with S >= 0.5.
     ///
     /// Goes down in blocks of a kernel radius and passes over those that no material reaches, where S is 0.
-    fn highest_filled(&self, view: &View<D>) -> Option<usize> {
+    fn highest_filled(&self, view: &View<D>, near: &mut Nearby<D>) -> Option<usize> {
         let support = view.kernel.support();
         let height = |k| self.height(view, k);
         let block = ((support / (STEP * view.spacing)) as usize).max(1);
@@ -125,16 +127,12 @@ impl<const D: usize> DepthLine<D> {
         while top > 0 {
             let bottom = top.saturating_sub(block);
             let middle = 0.5 * (height(bottom) + height(top));
-            let mut is_reached = false;
-            // The block is at most a kernel radius long; half of it more takes in all that its places see.
-            let radius = 1.5 * support;
             let centre = along(&self.foot, &self.up, middle);
-            view.cells
-                .for_each_within(&centre, radius, |_, _, _| is_reached = true);
-            if is_reached
+            // The block, its upper end included, is at most a kernel radius long.
+            if near.gather(&centre, 0.5 * support)
                 && let Some(k) = (bottom..top)
                     .rev()
-                    .find(|&k| self.fill(view, height(k)) >= 0.5)
+                    .find(|&k| self.fill(near, height(k)) >= 0.5)
             {
                 return Some(k);
             }
@@ -144,13 +142,13 @@ impl<const D: usize> DepthLine<D> {
     }
 
     /// The sum S at a height above the foot.
-    fn fill(&self, view: &View<D>, height: f64) -> f64 {
+    fn fill(&self, near: &Nearby<D>, height: f64) -> f64 {
         let at = along(&self.foot, &self.up, height);
-        let material = view.material_sum(&at);
+        let material = near.material_sum(&at);
         if material == 0.0 {
             return 0.0;
         }
-        let (bed, side) = view.solid_sums(&at, &self.foot, &self.up);
+        let (bed, side) = near.solid_sums(&at, &self.foot, &self.up);
         // The bound keeps a place inside a wall from dividing by nothing.
         (material + bed) / (1.0 - side).max(0.1)
     }
@@ -274,10 +272,13 @@ mod tests {
                 length,
             };
             bed.look(|view| {
+                let mut all = Nearby::new(view);
+                all.gather(&foot, length + view.spacing);
                 let everywhere = (0..=line.count(view))
                     .rev()
-                    .find(|&k| line.fill(view, line.height(view, k)) >= 0.5);
-                assert_eq!(line.highest_filled(view), everywhere, "line {k}");
+                    .find(|&k| line.fill(&all, line.height(view, k)) >= 0.5);
+                let mut near = Nearby::new(view);
+                assert_eq!(line.highest_filled(view, &mut near), everywhere, "line {k}");
                 let deep = line.depth(view).is_ok_and(|depth| depth >= view.spacing);
                 assert_eq!(line.is_deep(view, view.spacing), deep, "line {k}");
             });

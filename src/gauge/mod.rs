@@ -11,6 +11,7 @@ mod depth;
 mod front;
 mod interface;
 mod mass;
+mod nearby;
 mod pressure;
 mod profile;
 mod view;

@@ -62,13 +62,14 @@ impl<const D: usize> View<'_, D> {
     ) {
         let support = self.kernel.support();
         cells.for_each_within(at, support, &mut visit);
-        if self.geometry.is_axisymmetric() && at[0] < support {
-            let mirror = |mut x: [f64; D]| {
-                x[0] = -x[0];
-                x
-            };
+        if self.has_images(at, support) {
             cells.for_each_within(&mirror(*at), support, |j, x, r| visit(j, mirror(x), r));
         }
+    }
+
+    /// Whether rings may have images across the axis within `radius` [m] of a place.
+    pub(super) fn has_images(&self, at: &[f64; D], radius: f64) -> bool {
+        self.geometry.is_axisymmetric() && at[0] < radius
     }
 
     /// Calls `visit` with index and distance [m] of every particle within the kernel's support of a place, a ring's
@@ -80,30 +81,6 @@ impl<const D: usize> View<'_, D> {
     /// As [`View::for_each_particle`], with the particle's place [m] between them.
     pub fn for_each_particle_at(&self, at: &[f64; D], visit: impl FnMut(usize, [f64; D], f64)) {
         self.for_each_near(self.cells, at, visit);
-    }
-
-    /// Shepard sum of the material, sum_j V_j W(|x - x_j|) [1].
-    #[must_use]
-    pub fn material_sum(&self, at: &[f64; D]) -> f64 {
-        let mut sum = 0.0;
-        self.for_each_particle(at, |j, r| sum += self.volume(j) * self.kernel.w(r));
-        sum
-    }
-
-    /// Shepard sums of solid behind and before the plane through `foot` with normal `up`, at `at` [1].
-    #[must_use]
-    pub fn solid_sums(&self, at: &[f64; D], foot: &[f64; D], up: &[f64; D]) -> (f64, f64) {
-        let volume = self.spacing.powi(D as i32);
-        let (mut behind, mut before) = (0.0, 0.0);
-        self.for_each_near(self.solid, at, |_, x, r| {
-            let weight = volume * self.kernel.w(r);
-            if super::component(&x, foot, up) < 0.0 {
-                behind += weight;
-            } else {
-                before += weight;
-            }
-        });
-        (behind, before)
     }
 
     /// Whether a place is inside a wall or gate.
@@ -120,6 +97,12 @@ impl<const D: usize> View<'_, D> {
         });
         sum > 0.9 || nearest < 0.45 * self.spacing
     }
+}
+
+/// The place across the axis of rings.
+pub(super) fn mirror<const D: usize>(mut x: [f64; D]) -> [f64; D] {
+    x[0] = -x[0];
+    x
 }
 
 #[cfg(test)]

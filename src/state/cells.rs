@@ -134,10 +134,7 @@ impl<const D: usize> CellGrid<D> {
 
     /// Counting sort: stable, so points of a cell keep the order of their indices.
     fn sort(&mut self, positions: &[[f64; D]]) {
-        let wrapped: Vec<[f64; D]> = positions
-            .iter()
-            .map(|x| std::array::from_fn(|a| self.axes[a].wrap(x[a])))
-            .collect();
+        let wrapped: Vec<[f64; D]> = positions.iter().map(|x| self.wrap(x)).collect();
         let cells: usize = self.axes.iter().map(|a| a.cells).product();
         self.first = vec![0; cells + 1];
         for x in &wrapped {
@@ -176,10 +173,47 @@ impl<const D: usize> CellGrid<D> {
         radius: f64,
         mut visit: impl FnMut(usize, [f64; D], f64),
     ) {
+        let wrapped = self.wrap(centre);
+        self.for_each_slot(&wrapped, radius, |slot| {
+            if let Some(image) = self.image(slot, centre, &wrapped, radius) {
+                visit(self.entries[slot].0 as usize, image.0, image.1);
+            }
+        });
+    }
+
+    /// Fills `crowd` with the points closer to `centre` than `radius` [m], for [`CellGrid::for_each_of`].
+    pub fn gather(&self, centre: &[f64; D], radius: f64, crowd: &mut Vec<u32>) {
+        let wrapped = self.wrap(centre);
+        crowd.clear();
+        self.for_each_slot(&wrapped, radius, |slot| {
+            if self.image(slot, centre, &wrapped, radius).is_some() {
+                crowd.push(slot as u32);
+            }
+        });
+    }
+
+    /// As [`CellGrid::for_each_within`], of the points in `crowd` alone: the same visits if it was gathered within at
+    /// least `radius` and the distance of the two centres, in the same order but where a sphere reaches round a period.
+    pub fn for_each_of(
+        &self,
+        crowd: &[u32],
+        centre: &[f64; D],
+        radius: f64,
+        mut visit: impl FnMut(usize, [f64; D], f64),
+    ) {
+        let wrapped = self.wrap(centre);
+        for &slot in crowd {
+            if let Some(image) = self.image(slot as usize, centre, &wrapped, radius) {
+                visit(self.entries[slot as usize].0 as usize, image.0, image.1);
+            }
+        }
+    }
+
+    /// Calls `visit` with the number of each entry in the cells that a sphere touches.
+    fn for_each_slot(&self, wrapped: &[f64; D], radius: f64, mut visit: impl FnMut(usize)) {
         if self.entries.is_empty() {
             return;
         }
-        let wrapped: [f64; D] = std::array::from_fn(|a| self.axes[a].wrap(centre[a]));
         let reach: [(usize, usize); D] =
             std::array::from_fn(|a| self.axes[a].reach(wrapped[a], radius));
         let mut offset = [0_usize; D];
@@ -187,17 +221,7 @@ impl<const D: usize> CellGrid<D> {
             let cell = self.flat(&std::array::from_fn(|a| {
                 (reach[a].0 + offset[a]) % self.axes[a].cells
             }));
-            for (index, x) in
-                &self.entries[self.first[cell] as usize..self.first[cell + 1] as usize]
-            {
-                let d: [f64; D] =
-                    std::array::from_fn(|a| self.axes[a].difference(x[a], wrapped[a]));
-                let square: f64 = d.iter().map(|v| v * v).sum();
-                if square < radius * radius {
-                    let image = std::array::from_fn(|a| centre[a] + d[a]);
-                    visit(*index as usize, image, square.sqrt());
-                }
-            }
+            (self.first[cell] as usize..self.first[cell + 1] as usize).for_each(&mut visit);
             // Next cell of the block, first axis fastest.
             let Some(axis) = (0..D).find(|&a| offset[a] + 1 < reach[a].1) else {
                 return;
@@ -205,6 +229,27 @@ impl<const D: usize> CellGrid<D> {
             offset[axis] += 1;
             offset[..axis].fill(0);
         }
+    }
+
+    /// Position of an entry's image nearest to `centre` [m] and its distance [m], if that is less than `radius`.
+    #[inline]
+    fn image(
+        &self,
+        slot: usize,
+        centre: &[f64; D],
+        wrapped: &[f64; D],
+        radius: f64,
+    ) -> Option<([f64; D], f64)> {
+        let x = &self.entries[slot].1;
+        let d: [f64; D] = std::array::from_fn(|a| self.axes[a].difference(x[a], wrapped[a]));
+        let square: f64 = d.iter().map(|v| v * v).sum();
+        (square < radius * radius)
+            .then(|| (std::array::from_fn(|a| centre[a] + d[a]), square.sqrt()))
+    }
+
+    /// The image inside the periods.
+    fn wrap(&self, x: &[f64; D]) -> [f64; D] {
+        std::array::from_fn(|a| self.axes[a].wrap(x[a]))
     }
 
     fn cell_of(&self, wrapped: &[f64; D]) -> usize {
@@ -287,6 +332,24 @@ mod tests {
         check([true, true]);
         check([false, false, false]);
         check([true, false, true]);
+    }
+
+    #[test]
+    fn a_crowd_is_visited_as_all_points_are() {
+        let points = scattered::<2>(700);
+        for periodic in [false, true] {
+            let periods = [periodic.then_some((0.0, 1.0)), None];
+            let grid = CellGrid::build(&points, 0.11, &periods);
+            let mut crowd = Vec::new();
+            for (k, centre) in scattered::<2>(60).iter().enumerate() {
+                let at = [centre[0] + 0.002 * k as f64, centre[1] - 0.05];
+                grid.gather(centre, 0.11 + 0.13, &mut crowd);
+                let (mut all, mut some) = (Vec::new(), Vec::new());
+                grid.for_each_within(&at, 0.11, |i, x, r| all.push((i, x, r)));
+                grid.for_each_of(&crowd, &at, 0.11, |i, x, r| some.push((i, x, r)));
+                assert_eq!(some, all, "at {at:?}, periodic {periodic}");
+            }
+        }
     }
 
     #[test]
