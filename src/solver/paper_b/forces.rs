@@ -77,6 +77,7 @@ impl<const D: usize> Solver<D> {
         let grains = &state.grains;
         let (own, h) = (&response[i], self.kernel.h);
         let c = self.sound_speed_of(&self.materials[grains.phase[i] as usize]);
+        let artificial = h * self.artificial_density(state, i);
         let mut forces = Forces::default();
         // (1/V_i) times the force on i, of neighbours, then of walls.
         let mut push = [0.0; D];
@@ -87,20 +88,19 @@ impl<const D: usize> Solver<D> {
             };
             let other = &response[j];
             let both = own.pressure + other.pressure;
-            let tau = add(
-                &apply(&own.shear_stress, &at.slope),
-                &apply(&other.shear_stress, &at.slope),
-            );
+            let stress = std::array::from_fn(|k| add(&own.shear_stress[k], &other.shear_stress[k]));
+            let tau = apply(&stress, &at.slope);
             let du = sub(&grains.velocity[j], &grains.velocity[i]);
             let approach = dot(&du, &at.offset) / (at.r * at.r + 0.01 * h * h);
             forces.approach_rate = forces.approach_rate.max(-approach);
-            let artificial = h * self.artificial_density(state, i, j) * approach;
-            for k in 0..D {
-                push[k] += tau[k] - both * at.slope[k] + artificial * at.slope[k];
-            }
+            let mut press = -both;
             if grains.phase[j] == grains.phase[i] {
+                press += artificial * approach;
                 let jump = grains.density[j] - grains.density[i];
                 forces.diffusion += psi(&at, jump, &sums[i], &sums[j]);
+            }
+            for k in 0..D {
+                push[k] += tau[k] + press * at.slope[k];
             }
         }
         forces.diffusion *= h * c * self.numerics.density_diffusion;
@@ -114,12 +114,10 @@ impl<const D: usize> Solver<D> {
     }
 
     /// alpha c rho_0 between particles of one Newtonian fluid ("light artificial viscosity used on the linear phase only",
-    /// [B] section 3.2), 0 elsewhere [kg/(m^2 s)].
-    #[inline(always)]
-    fn artificial_density(&self, state: &State<D>, i: usize, j: usize) -> f64 {
-        let phase = state.grains.phase[i];
-        let material = &self.materials[phase as usize];
-        if state.grains.phase[j] == phase && material.is_newtonian() {
+    /// [B] section 3.2), 0 of others [kg/(m^2 s)].
+    fn artificial_density(&self, state: &State<D>, i: usize) -> f64 {
+        let material = &self.materials[state.grains.phase[i] as usize];
+        if material.is_newtonian() {
             material.artificial_viscosity * self.sound_speed_of(material) * material.rest_density()
         } else {
             0.0
@@ -285,5 +283,6 @@ impl<const D: usize> Solver<D> {
 fn psi<const D: usize>(at: &Near<D>, jump: f64, own: &Sums<D>, other: &Sums<D>) -> f64 {
     let mean = add(&own.density_gradient, &other.density_gradient);
     let excess = jump - 0.5 * dot(&mean, &at.offset);
-    2.0 * excess * dot(&at.offset, &at.slope) / (at.r * at.r)
+    // r_ji.grad W = -F r^2.
+    -2.0 * excess * at.steepness
 }

@@ -51,6 +51,8 @@ pub(super) struct Near<const D: usize> {
     pub(super) r: f64,
     /// V_j grad W [1/m].
     pub(super) slope: Vector<D>,
+    /// V_j F, so that grad W = F (r_i - r_j) [1/m^2].
+    pub(super) steepness: f64,
 }
 
 impl<const D: usize> Solver<D> {
@@ -94,7 +96,7 @@ impl<const D: usize> Solver<D> {
         let mut whole = moment;
         let mut hidden = 0.0;
         for element in self.elements(x, walls) {
-            hidden += element.hidden;
+            hidden += self.hidden(&element);
             let area = element.area();
             // A wall at rest: u_s - u_i, of which free slip sees the normal part only.
             let towards = -dot(u, &element.normal);
@@ -134,11 +136,12 @@ impl<const D: usize> Solver<D> {
         let support = self.kernel.support();
         (r2 < support * support && r2 > 0.0).then(|| {
             let r = r2.sqrt();
+            let steepness = self.volume[j] * self.kernel.f(r);
             Near {
                 offset,
                 r,
-                // grad_i W = F (r_i - r_j).
-                slope: scale(-self.volume[j] * self.kernel.f(r), &offset),
+                slope: scale(-steepness, &offset),
+                steepness,
             }
         })
     }

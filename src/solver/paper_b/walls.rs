@@ -24,8 +24,8 @@ pub(super) struct Seen<const D: usize> {
     pub(super) normal: Vector<D>,
     /// W_is S_s [1/m].
     pub(super) weight: f64,
-    /// Share of the kernel that it hides [1].
-    pub(super) hidden: f64,
+    /// Its length, in space the side of a square [m].
+    side: f64,
     /// Distance of the particle in front of it [m], and whether it is right above it, not beside it.
     pub(super) front: f64,
     pub(super) below: bool,
@@ -80,13 +80,24 @@ impl<const D: usize> Solver<D> {
                 offset,
                 normal,
                 weight: self.kernel.w(r) * area,
+                side,
                 front,
                 below,
-                hidden: element.hidden(&self.kernel, front.max(CLOSEST * dp)),
                 index: w,
                 group: self.walls.group[w] as usize,
             })
         })
+    }
+
+    /// Share of the kernel that an element hides [1]: an integral over its surface, not for those who only ask where it is.
+    pub(super) fn hidden(&self, seen: &Seen<D>) -> f64 {
+        let element = Element {
+            offset: seen.offset,
+            normal: seen.normal,
+            side: seen.side,
+        };
+        let closest = CLOSEST * self.numerics.spacing;
+        element.hidden(&self.kernel, seen.front.max(closest))
     }
 
     /// Takes from `way` what goes into walls right before the particle at `x`. Shifting does not know that nothing comes after
