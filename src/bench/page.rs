@@ -84,7 +84,8 @@ pub fn demands(run: &SpeedRun) -> Vec<Demand> {
     let flat = range(plane(run).map(pairs_ns));
     let spread = flat.1 / flat.0 - 1.0;
     let cost = |k: usize| run.column.get(k).map_or(f64::NAN, Stretch::cost);
-    let ratio = run.paper_a.ratio();
+    let (ratio, in_lanes) = (run.paper_a.ratio(), run.paper_a.ratio_in_lanes());
+    let stretch = number(run.paper_a.paper_a.simulated);
     let mut demands = vec![
         Demand {
             what: "pair sweep against the roofline kernel (pairs a second, plane, h/dp 1.6, one core)",
@@ -140,17 +141,14 @@ pub fn demands(run: &SpeedRun) -> Vec<Demand> {
         Demand {
             what: "the same by `paper_a` (plain scalar sweeps) over the default, same simulated time",
             asked: "at least 250 times the CPU time",
-            measured: format!(
-                "{ratio:.0} times over the first {} s",
-                number(run.paper_a.paper_a.simulated)
-            ),
+            measured: format!("{ratio:.0} times over the first {stretch} s"),
             verdict: judged(ratio >= 250.0),
         },
         Demand {
             what: "the same by `paper_a` on the same kernels",
             asked: "at least 60 times",
-            measured: "there is no such form of `paper_a`".to_owned(),
-            verdict: Verdict::NoResult,
+            measured: format!("{in_lanes:.0} times over the first {stretch} s"),
+            verdict: judged(in_lanes >= 60.0),
         },
         Demand {
             what: "the pile at rest: CPU time of one simulated second in steps of 0.1 s, no log",
@@ -241,7 +239,7 @@ fn how(run: &SpeedRun) -> String {
     format!(
         "## How to repeat it\n\n```\ncargo run --release -- bench speed --page docs/performance.md\n```\n\nIt takes some minutes \
          (`--quick`: seconds, judges nothing), keeps the run in `benches/runs/`, and writes this page from it; \
-         `--only-page` writes the page from a kept run. `--paper-a-budget` is the CPU time that [A]'s scheme may take ({} s \
+         `--only-page` writes the page from a kept run. `--paper-a-budget` is the CPU time that [A]'s scheme may take pair by pair ({} s \
          here).\n\nTimes are CPU times of the thread (two threads: wall time too), so that other programs cost no time, though \
          they do take cache and memory from it. What is compared runs in turns, ratios are medians of the ratios within a round. \
          Do it on a machine that does nothing else, or believe the ratios more than the times.",

@@ -124,7 +124,8 @@ pub fn run(choices: &Choices, watch: &mut dyn FnMut(Progress)) -> Result<SpeedRu
     let (simulated, repeats) = plan.column;
     parts.push(20.0 * simulated * repeats as f64);
     parts.push(1.5 * plan.rest);
-    parts.push(choices.paper_a_budget.min(1000.0 * plan.paper_a));
+    // Pair by pair, and in lanes.
+    parts.push(1.7 * choices.paper_a_budget.min(1300.0 * plan.paper_a));
     parts.push(
         plan.sizes
             .0

@@ -57,7 +57,7 @@ pub use error::SolverError;
 pub use grid::Periodic;
 pub use numerics::{Numerics, Scheme, YieldForm};
 pub use outputs::three;
-pub use paper_a::PaperA;
+pub use paper_a::{PaperA, Sweeps};
 pub use paper_b::PaperB;
 pub use passes::{Pass, Passes};
 pub use plan::{OnMove, Plan, StepBound, StepInputs, SubStep};

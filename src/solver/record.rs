@@ -65,8 +65,9 @@ impl Record {
         Self::from_words(&words)
     }
 
+    /// Of words in any order.
     #[inline(always)]
-    fn from_words(w: &[f64; 2 * LANES]) -> Self {
+    pub(super) fn from_words(w: &[f64; 2 * LANES]) -> Self {
         Self([
             Quad([w[0], w[1], w[2], w[3]]),
             Quad([w[4], w[5], w[6], w[7]]),
@@ -140,7 +141,7 @@ pub(super) struct Stresses<L: Lanes, const D: usize> {
 
 /// The words of four records, one group for each word. What is not used costs nothing once inlined.
 #[inline(always)]
-fn words<L: Lanes>(lanes: L, of: &[Record], j: &[u32; LANES]) -> [Four<L>; 2 * LANES] {
+pub(super) fn words<L: Lanes>(lanes: L, of: &[Record], j: &[u32; LANES]) -> [Four<L>; 2 * LANES] {
     let r = [
         &of[j[0] as usize],
         &of[j[1] as usize],

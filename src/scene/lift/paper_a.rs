@@ -3,9 +3,9 @@
 use super::scheme::{REMEDY, motion};
 use super::{Lift, cross_product, dot, length};
 use crate::material::Friction;
-use crate::scene::raw::{Place, RawNumerics, RawWall, SlipWord};
+use crate::scene::raw::{Place, RawNumerics, RawWall, SlipWord, SweepsWord};
 use crate::scene::types::NamedMaterial;
-use crate::solver::PaperA;
+use crate::solver::{PaperA, Sweeps};
 
 /// What scheme `paper_a` supports, for messages.
 const SUPPORTED: &str = "with scheme = \"paper_a\": bodies without bulk friction, and fixed walls without slip that are planes, straight \
@@ -26,6 +26,10 @@ impl Lift<'_> {
             reference_yield_stress: reference,
             scaling_time: raw.scaling_time.as_ref()?.value.0,
             ghost_velocity_factor: raw.ghost_velocity_factor.as_ref()?.value.0,
+            sweeps: match raw.sweeps.as_ref()?.value {
+                SweepsWord::Lanes => Sweeps::Lanes,
+                SweepsWord::Plain => Sweeps::Plain,
+            },
         })
     }
 

@@ -67,6 +67,7 @@ fn keys(raw: &RawNumerics) -> Vec<Key<'_>> {
             PAPER_A,
             place(&raw.ghost_velocity_factor),
         ),
+        ("sweeps", PAPER_A, place(&raw.sweeps)),
         ("relaxation_factor", PAPER_B, place(&raw.relaxation_factor)),
         ("stiffening_time", PAPER_B, place(&raw.stiffening_time)),
     ]

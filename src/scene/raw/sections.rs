@@ -95,6 +95,8 @@ table! {
         optional scaling_time: Time, in Range::above(0.0), default "1 s";
         /// Scheme paper_a: largest factor beta_max of a grain's velocity against the ghosts behind a wall.
         optional ghost_velocity_factor: Ratio, in Range::within(1.0, 10.0), default 1.5;
+        /// Scheme paper_a: how sums over pairs run. Results differ by rounding.
+        optional sweeps: SweepsWord, default "lanes";
         /// Scheme paper_b: factor K_R on the acceleration of what does not yield; if left out, 1 for one fluid that yields below 100 Pa, 0.05 for other single materials, 0.01 for several.
         optional relaxation_factor: Ratio, in Range::above_to(0.0, 1.0);
         /// Scheme paper_b: stiffening time m of Papanastasiou's viscosity; if left out, 0.1 s for fluids that yield below 100 Pa, else 0.01 s. Longer takes smaller steps.
@@ -153,6 +155,16 @@ choice! {
         "paper_a" => PaperA,
         /// the scheme of Monge-Gapper et al. (2024) as they wrote it, corrected, for comparison: explicit, several phases, boundary integrals at fixed walls, unyielded material attenuated; they take smoothing_ratio = 2
         "paper_b" => PaperB,
+    }
+}
+
+choice! {
+    /// How sums over pairs run.
+    SweepsWord {
+        /// four neighbours at a time
+        "lanes" => Lanes,
+        /// one pair after the other, the plain form that the other is tested and timed against
+        "plain" => Plain,
     }
 }
 

@@ -1,7 +1,7 @@
 //! [A]'s own scheme, kept as the reference that the default is measured against (docs/theory.md, "Scheme paper_a").
 //!
-//! Plain scalar sweeps over neighbour lists, no correction, no diffusion, nothing precomputed. This file is the time
-//! scheme of [A] section 3.5; `sums` are the sums over pairs and ghosts, `response` the pressure law and the viscosity.
+//! No correction, no diffusion. This file is the time scheme of [A] section 3.5; `sums` are the sums over pairs and ghosts as
+//! printed, pair by pair, `lanes` the same on the default's kernels, `response` the pressure law and the viscosity.
 //!
 //! Symbols: D rho/Dt = R, Dv/Dt = a. One step of length dt, from x, v, rho at n and a at n - 1/2:
 //!
@@ -9,6 +9,7 @@
 //! a(n+1/2) from x', v', rho';  v(n+1) = v + dt a(n+1/2),  x(n+1) = x' + dt/2 v(n+1)                          (P2)
 //! rho(n+1) = rho' + dt/2 R(x(n+1), v(n+1))                                                                   (P3)
 
+mod lanes;
 mod response;
 mod sums;
 
@@ -20,6 +21,15 @@ use super::{OnMove, Solver, SolverError, StepBound, SubStep};
 use response::Response;
 use sums::Rates;
 
+/// How sums over pairs run; the results differ by rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sweeps {
+    /// Four neighbours at a time, over pairs that are found once for the rates and the accelerations.
+    Lanes,
+    /// One pair after the other, nothing kept.
+    Plain,
+}
+
 /// What only this scheme needs to know.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperA {
@@ -29,6 +39,8 @@ pub struct PaperA {
     pub scaling_time: f64,
     /// Largest factor beta_max >= 1 of the velocity that a ghost gives back ([A] eq. 36) [1].
     pub ghost_velocity_factor: f64,
+    /// How sums over pairs run.
+    pub sweeps: Sweeps,
 }
 
 /// Work arrays, one entry a particle; empty in other schemes. Nothing here outlives a step but through [`State`].

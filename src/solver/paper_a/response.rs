@@ -127,6 +127,7 @@ fn stiffness<const D: usize>(x: f64, r: f64, q: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Sweeps;
     use super::*;
 
     #[test]
@@ -136,6 +137,7 @@ mod tests {
             reference_yield_stress: 800.0,
             scaling_time: 1.0,
             ghost_velocity_factor: 1.5,
+            sweeps: Sweeps::Plain,
         };
         for (rho, shear) in [(1600.0, 0.0), (1565.0, 5.0), (1550.0, 40.0), (1500.0, 90.0)] {
             let at = |rho: f64| granular::<2>(&choices, &m, 4.0, rho, shear);

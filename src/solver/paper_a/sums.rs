@@ -9,7 +9,7 @@ use crate::solver::Solver;
 use crate::state::State;
 
 use super::response::Response;
-use super::{PaperA, Work};
+use super::{PaperA, Sweeps, Work};
 
 /// What one sweep gives a particle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -18,6 +18,37 @@ pub(super) struct Rates {
     pub(super) density: f64,
     /// gamma = sqrt(2 eps:eps), eps as printed: its trace is not taken out [1/s].
     pub(super) shear: f64,
+}
+
+/// What neighbours and ghosts add up to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gathered<const D: usize> {
+    /// sum m_j v.grad W [kg/(m^3 s)].
+    pub(super) continuity: f64,
+    /// - sum m_j/rho_j v (x) grad W [1/s].
+    pub(super) gradient: Tensor<D>,
+}
+
+impl<const D: usize> Gathered<D> {
+    const NOTHING: Self = Self {
+        continuity: 0.0,
+        gradient: [[0.0; D]; D],
+    };
+
+    #[inline(always)]
+    fn add(&mut self, mass: f64, rho: f64, v: &Vector<D>, at: &Seen<D>) {
+        let w = scale(at.f, &at.x);
+        self.continuity += mass * dot(v, &w);
+        add_outer(&mut self.gradient, -mass / rho, v, &w);
+    }
+
+    #[inline(always)]
+    pub(super) fn rates(&self) -> Rates {
+        Rates {
+            density: self.continuity,
+            shear: shear_rate_as_printed(&self.gradient),
+        }
+    }
 }
 
 /// Where a neighbour or ghost is, seen from particle i.
@@ -44,7 +75,7 @@ struct Ghost<const D: usize> {
 impl<const D: usize> Solver<D> {
     /// D rho/Dt ([A] eq. 26) and the shear rate ([A] eq. 31, symmetrised) at `velocity` and `density`.
     pub(super) fn sweep_rates(
-        &self,
+        &mut self,
         choices: &PaperA,
         state: &State<D>,
         velocity: &[Vector<D>],
@@ -53,46 +84,60 @@ impl<const D: usize> Solver<D> {
     ) {
         let grains = &state.grains;
         out.resize(grains.len(), Rates::default());
+        if choices.sweeps == Sweeps::Lanes {
+            self.sweep_rates_in_lanes(choices, state, velocity, density, out);
+            return;
+        }
         self.workers
             .blocks_read(&self.lists.blocks, out, |block, first, out| {
                 for (row, rates) in out.iter_mut().enumerate() {
                     let i = first + row;
-                    let (mut continuity, mut gradient) = (0.0, [[0.0; D]; D]);
-                    let mut add = |mass: f64, rho: f64, v: &Vector<D>, at: &Seen<D>| {
-                        let w = scale(at.f, &at.x);
-                        continuity += mass * dot(v, &w);
-                        add_outer(&mut gradient, -mass / rho, v, &w);
-                    };
+                    let mut sums = Gathered::NOTHING;
                     for &j in block.row(row) {
                         let j = j as usize;
                         let Some(at) = self.neighbour(state, i, j) else {
                             continue;
                         };
                         let v = sub(&velocity[i], &velocity[j]);
-                        add(grains.mass[j] / self.width, density[j], &v, &at);
+                        sums.add(grains.mass[j] / self.width, density[j], &v, &at);
                     }
-                    for ghost in self.ghosts(choices, state, i, block.wall_row(row)) {
-                        let v = scale(ghost.beta, &velocity[i]);
-                        add(ghost.mass, density[i], &v, &ghost.at);
-                    }
-                    *rates = Rates {
-                        density: continuity,
-                        shear: shear_rate_as_printed(&gradient),
-                    };
+                    let walls = block.wall_row(row);
+                    self.add_ghost_rates(choices, state, i, walls, (velocity, density), &mut sums);
+                    *rates = sums.rates();
                 }
             });
     }
 
-    /// Dv/Dt ([A] eq. 37) from the velocities and responses at n + 1/2.
-    pub(super) fn sweep_accelerations(
+    #[inline(always)]
+    pub(super) fn add_ghost_rates(
         &self,
+        choices: &PaperA,
+        state: &State<D>,
+        i: usize,
+        walls: &[u32],
+        (velocity, density): (&[Vector<D>], &[f64]),
+        sums: &mut Gathered<D>,
+    ) {
+        for ghost in self.ghosts(choices, state, i, walls) {
+            let v = scale(ghost.beta, &velocity[i]);
+            sums.add(ghost.mass, density[i], &v, &ghost.at);
+        }
+    }
+
+    /// Dv/Dt ([A] eq. 37) from the velocities and responses at n + 1/2, where rates were swept last.
+    pub(super) fn sweep_accelerations(
+        &mut self,
         choices: &PaperA,
         state: &State<D>,
         work: &mut Work<D>,
     ) {
         let grains = &state.grains;
-        let (velocity, response) = (&work.half_velocity, &work.response);
         work.acceleration.resize(grains.len(), [0.0; D]);
+        if choices.sweeps == Sweeps::Lanes {
+            self.sweep_accelerations_in_lanes(choices, state, work);
+            return;
+        }
+        let (velocity, response) = (&work.half_velocity, &work.response);
         self.workers.blocks_read(
             &self.lists.blocks,
             &mut work.acceleration,
@@ -109,14 +154,28 @@ impl<const D: usize> Solver<D> {
                         let stress = self.pair_stress(&response[i], &response[j], &v, &at);
                         push(a, -grains.mass[j] / self.width * stress, &at);
                     }
-                    for ghost in self.ghosts(choices, state, i, block.wall_row(row)) {
-                        let v = scale(ghost.beta, &velocity[i]);
-                        let stress = self.pair_stress(&response[i], &response[i], &v, &ghost.at);
-                        push(a, -ghost.mass * stress, &ghost.at);
-                    }
+                    let own = (&velocity[i], &response[i]);
+                    self.add_ghost_acceleration(choices, state, i, block.wall_row(row), own, a);
                 }
             },
         );
+    }
+
+    #[inline(always)]
+    pub(super) fn add_ghost_acceleration(
+        &self,
+        choices: &PaperA,
+        state: &State<D>,
+        i: usize,
+        walls: &[u32],
+        (v, response): (&Vector<D>, &Response),
+        a: &mut Vector<D>,
+    ) {
+        for ghost in self.ghosts(choices, state, i, walls) {
+            let v = scale(ghost.beta, v);
+            let stress = self.pair_stress(response, response, &v, &ghost.at);
+            push(a, -ghost.mass * stress, &ghost.at);
+        }
     }
 
     /// Impulse of the material on walls whose force somebody reads, over one step [N s].

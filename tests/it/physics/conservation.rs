@@ -2,7 +2,7 @@
 
 use super::{Unit, case};
 use sandgate::scene::{self, Scene};
-use sandgate::solver::{PaperA, Scheme, Solver, StepInputs};
+use sandgate::solver::{PaperA, Scheme, Solver, StepInputs, Sweeps};
 use sandgate::state::State;
 
 const CASES: [&str; 7] = [
@@ -149,6 +149,7 @@ fn every_scheme_keeps_momentum_and_loses_energy() {
         reference_yield_stress: 500.0,
         scaling_time: 1.0,
         ghost_velocity_factor: 1.5,
+        sweeps: Sweeps::Lanes,
     });
     let (start, explicit) = run(&scene, 0.01);
     let (before, scale) = momentum(&start);
