@@ -21,7 +21,7 @@ pub use bagnold::Bagnold;
 pub use barker_gray::BarkerGray;
 pub use bulk_friction::bulk_pressure;
 pub use constant_friction::{AngleMatch, ConstantFriction};
-pub use eos::grain_compression;
+pub use eos::{grain_compression, grain_compressions};
 pub use grains::Grains;
 pub use mu_i::{MuI, SAND_LAYER_FACTOR};
 pub use viscous::Viscous;

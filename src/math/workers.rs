@@ -107,14 +107,24 @@ impl Workers {
 
     /// out[i] written by f(i, &mut out[i]).
     pub fn each<T: Send>(&self, out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
+        self.in_chunks(out, |first, part| {
+            for (k, o) in part.iter_mut().enumerate() {
+                f(first + k, o);
+            }
+        });
+    }
+
+    /// As [`Workers::each`], a chunk at a time: f(first row, rows of out).
+    pub fn in_chunks<T: Send>(&self, out: &mut [T], f: impl Fn(usize, &mut [T]) + Sync) {
         match self.pool_for_rows(out.len()) {
-            None => out.iter_mut().enumerate().for_each(|(i, o)| f(i, o)),
+            None => {
+                for (c, part) in out.chunks_mut(CHUNK).enumerate() {
+                    f(c * CHUNK, part);
+                }
+            }
             Some(pool) => pool.run(|| {
-                out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, part)| {
-                    for (k, o) in part.iter_mut().enumerate() {
-                        f(c * CHUNK + k, o);
-                    }
-                });
+                let parts = out.par_chunks_mut(CHUNK).enumerate();
+                parts.for_each(|(c, part)| f(c * CHUNK, part));
             }),
         }
     }

@@ -1,7 +1,7 @@
-//! Per particle: density, relaxed strain rate, pressure from the equation of state, viscosity from the rheology
-//! (docs/theory.md, E5 and E6). No neighbours here.
+//! Per particle: density, relaxed strain rate, viscosity from the rheology (docs/theory.md, E5 and
+//! E6). No neighbours here.
 
-use crate::material::{Grains, Material, bulk_pressure, grain_compression};
+use crate::material::{Material, bulk_pressure};
 use crate::state::State;
 
 use super::{Solver, SolverError};
@@ -9,8 +9,7 @@ use super::{Solver, SolverError};
 /// What the rheology makes of one particle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Response {
-    pressure: f64,
-    /// With bulk friction.
+    /// With bulk friction [Pa].
     normal_pressure: f64,
     viscosity: f64,
     inertial_number: f64,
@@ -72,8 +71,8 @@ impl<const D: usize> Solver<D> {
 
     /// Pressures and viscosities from the state and its kinematics.
     pub(super) fn respond(&mut self, state: &State<D>) {
+        self.load_all(state);
         if self.has_effective_pressure {
-            self.load_all(state);
             self.subtract_pore_pressure(state);
         }
         let grains = &state.grains;
@@ -81,12 +80,8 @@ impl<const D: usize> Solver<D> {
         responses.resize(grains.len(), Response::default());
         self.workers.each(&mut responses, |i, response| {
             let material = &self.materials[grains.phase[i] as usize];
-            let rho = grains.density[i];
-            let load = self.load(material, rho, grains.relaxed_shear[i]);
-            let p = self.effective.get(i).map_or(load.0, |p| *p);
-            *response = self.resist(material, i, rho, load, p);
+            *response = self.resist(material, i, grains.density[i]);
         });
-        fill(&mut self.pressure, &responses, |r| r.pressure);
         fill(&mut self.viscosity, &responses, |r| r.viscosity);
         fill(&mut self.inertial_number, &responses, |r| r.inertial_number);
         if self.has_bulk_friction {
@@ -99,66 +94,13 @@ impl<const D: usize> Solver<D> {
         self.responses = responses;
     }
 
-    /// Pressures alone.
-    pub(super) fn load_all(&mut self, state: &State<D>) {
-        let grains = &state.grains;
-        let mut pressure = std::mem::take(&mut self.pressure);
-        pressure.resize(grains.len(), 0.0);
-        self.workers.each(&mut pressure, |i, p| {
-            let material = &self.materials[grains.phase[i] as usize];
-            *p = self
-                .load(material, grains.density[i], grains.relaxed_shear[i])
-                .0;
-        });
-        self.pressure = pressure;
-    }
-
-    /// Artificial sound speed of a material [m/s].
+    /// Viscosity, inertial number and bulk friction at the pressure p between grains: [A] eqs. 6, 7 with the cap.
     #[inline]
-    pub(super) fn sound_speed_of(&self, m: &Material) -> f64 {
-        m.sound_speed.unwrap_or(self.numerics.sound_speed)
-    }
-
-    /// Pressure [Pa] and what compression of the grains changes in the inertial number [1]: [A] eqs. 41, 43, 44; of fluids
-    /// and saturated grains [B] eq. 3, with the tension that [`Material::least_pressure`] allows.
-    #[inline]
-    pub(super) fn load(&self, m: &Material, rho: f64, relaxed: f64) -> (f64, f64) {
-        let c = self.sound_speed_of(m);
-        let rest = m.rest_density();
-        if rho < rest && m.is_fluid() {
-            let least = if m.is_dense(rho) {
-                m.least_pressure(relaxed)
-            } else {
-                0.0
-            };
-            return (least.max(c * c * (rho - rest)), 1.0);
-        }
-        let compressibility = 1.0 / (rest * c * c);
-        let b = m.grains.dilatancy_factor(compressibility) * relaxed * relaxed;
-        let loosest = m.grains.loosest_density() / rest;
-        // Rods of a planar scene are compressed across alone, grains in space and in rings all round.
-        let (x, factor) = if D == 3 || self.geometry.is_axisymmetric() {
-            let x = grain_compression::<3>(rho / rest, b, loosest);
-            (x, Grains::compressed_time_factor::<3>(x))
-        } else {
-            (grain_compression::<2>(rho / rest, b, loosest), 1.0)
-        };
-        ((x - 1.0) / compressibility, factor)
-    }
-
-    /// Viscosity, inertial number and bulk friction at a pressure p between grains: [A] eqs. 6, 7 with the cap.
-    #[inline]
-    fn resist(
-        &self,
-        m: &Material,
-        i: usize,
-        rho: f64,
-        (pressure, factor): (f64, f64),
-        p: f64,
-    ) -> Response {
+    fn resist(&self, m: &Material, i: usize, rho: f64) -> Response {
         let k = &self.kinematics[i];
+        let pressure = self.pressure[i];
+        let p = self.effective.get(i).map_or(pressure, |p| *p);
         let mut response = Response {
-            pressure,
             normal_pressure: pressure,
             ..Response::default()
         };
@@ -167,7 +109,7 @@ impl<const D: usize> Solver<D> {
         if p <= 0.0 && !(holds && m.is_dense(rho)) {
             return response;
         }
-        let correction = k.correction * factor;
+        let correction = k.correction * self.compressed_time_factor(m, pressure);
         if p > 0.0 {
             response.inertial_number = correction * k.shear * m.grains.inertial_time(p);
         }

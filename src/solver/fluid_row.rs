@@ -9,7 +9,7 @@ use super::pair::Block;
 use super::record::{Record, motions};
 
 /// Least r^2 over h^2 that a pair form divides by: what fills the last group of a row has r = 0.
-const LEAST_DISTANCE2: f64 = 1e-12;
+pub(super) const LEAST_DISTANCE2: f64 = 1e-12;
 
 /// Sums of one row while it is swept.
 pub(super) struct Row<const D: usize> {

@@ -11,6 +11,7 @@ mod acoustic;
 mod barrier;
 mod constitutive;
 mod devices;
+mod equation_of_state;
 mod error;
 mod explicit;
 mod fluid_row;

@@ -83,7 +83,7 @@ impl<const D: usize> Solver<D> {
         }
         let rate = self.sound_speed_of(m) / self.kernel.h;
         let rest = m.rest_density();
-        let free = self.load(m, rho, relaxed).0 == 0.0;
+        let free = self.load(m, rho, relaxed) == 0.0;
         if !m.is_fluid() && !free && k.looseness.abs() < HELD {
             return 0.0;
         }

@@ -7,6 +7,7 @@
 
 use crate::math::{Four, LANES, Lanes, Quad, Vector, in_lanes};
 use crate::solver::Solver;
+use crate::solver::fluid_row::LEAST_DISTANCE2;
 use crate::solver::pair::Block;
 use crate::solver::record::{Record, words};
 use crate::state::State;
@@ -15,9 +16,6 @@ use super::PaperA;
 use super::Work;
 use super::response::Response;
 use super::sums::{Gathered, Rates};
-
-/// Least r^2/h^2 that is divided by: groups are filled up with the particle itself.
-const LEAST_DISTANCE2: f64 = 1e-12;
 
 impl<const D: usize> Solver<D> {
     /// As `sweep_rates`.
