@@ -111,6 +111,8 @@ pub(crate) trait Values {
     fn get(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault>;
     /// As `Component::set`.
     fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault>;
+    /// As `Component::output_derivatives`.
+    fn slopes(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault>;
 }
 
 /// Reads variables of kind `V` into `count` places; `make` turns each value into what C holds.
@@ -180,7 +182,7 @@ pub(crate) fn get_texts(
 
 /// Slopes of outputs; orders other than 1 are refused.
 pub(crate) fn output_derivatives(
-    instance: &Instance,
+    from: &mut (impl Values + ?Sized),
     references: &[u32],
     orders: &[i32],
     out: &mut Out<f64>,
@@ -193,15 +195,13 @@ pub(crate) fn output_derivatives(
     }
     out.check(count, "values")?;
     check_length(
-        instance.table(),
+        from.table(),
         "get_output_derivatives",
         references,
         count,
     )?;
     let mut slopes = vec![0.0; count];
-    instance
-        .component
-        .output_derivatives(references, &mut slopes)?;
+    from.slopes(references, &mut slopes)?;
     out.write(&slopes, "values")
 }
 

@@ -91,9 +91,9 @@ pub(crate) extern "C" fn fmi2SetupExperiment(
             return Err(bad_time("start time", start, "a finite time".to_owned()));
         }
         if let Some(stop) = stop
-            && !(stop.is_finite() && stop > start)
+            && !(stop.is_finite() && stop >= start)
         {
-            let allowed = format!("a finite time after {start} s, the start");
+            let allowed = format!("a finite time from {start} s, the start, on");
             return Err(bad_time("stop time", stop, allowed));
         }
         i.experiment = Experiment { start, stop };
@@ -242,7 +242,10 @@ pub(crate) extern "C" fn fmi2GetFMUstate(c: Handle, mut state: StateSlot) -> Sta
 pub(crate) extern "C" fn fmi2SetFMUstate(c: Handle, state: StateHandle) -> Status {
     c.call("fmi2SetFMUstate", Need::Any, |i| {
         let state = state.get()?;
-        i.restore(&state.bytes, state.experiment)
+        i.restore(&state.bytes, state.experiment)?;
+        // An instance that comes to its time by a state was told of its end before.
+        i.component.set_stop_time(i.experiment.stop);
+        Ok(())
     })
     .into()
 }
@@ -428,7 +431,7 @@ impl Instance {
             return Ok(());
         }
         Err(Fault::Component(Error::NotAllowedNow {
-            call,
+            call: call.to_owned(),
             mode,
             allowed: format!("{wanted:?}"),
         }))

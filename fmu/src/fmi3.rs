@@ -498,7 +498,7 @@ pub(crate) extern "C" fn fmi3GetOutputDerivatives(
     mut values: Out<f64>,
     n_values: usize,
 ) -> Status {
-    c.call("fmi3GetOutputDerivatives", Need::Sound, |i| {
+    c.visit("fmi3GetOutputDerivatives", |i| {
         let (vr, orders) = (vr.slice(n, "valueReferences")?, orders.slice(n, "orders")?);
         output_derivatives(i, vr, orders, &mut values, n_values)
     })

@@ -84,6 +84,10 @@ impl Values for Guest<'_, '_> {
         self.inputs.push((references.to_vec(), values.to_vec()));
         Ok(())
     }
+
+    fn slopes(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
+        Ok(self.moment.output_derivatives(references, values)?)
+    }
 }
 
 impl Values for Instance {
@@ -108,6 +112,10 @@ impl Values for Instance {
         self.journal.set(&self.component, references, values);
         self.tell_notes();
         Ok(())
+    }
+
+    fn slopes(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
+        Ok(self.component.output_derivatives(references, values)?)
     }
 }
 
@@ -327,13 +335,11 @@ impl Instance {
             return self.step(t, h);
         };
         let log = self.log.clone();
-        let report = self.step_with(t, h, |component, journal, t, h| {
+        self.step_with(t, h, |component, journal, t, h| {
             let mut tell =
                 |moment: &mut Intermediate<'_>| updates.tell(moment, &log, journal, door);
             component.do_step_watched(t, h, &mut tell)
-        });
-        self.tell_notes();
-        report
+        })
     }
 
     fn step_with(
@@ -345,8 +351,10 @@ impl Instance {
         self.last_step = Status::Error;
         self.journal.asks_step(&self.component, t, h);
         self.journal.before_step(&mut self.component)?;
-        let report = step(&mut self.component, &mut self.journal, t, h)
-            .inspect_err(|_| self.journal.failed_step())?;
+        let done = step(&mut self.component, &mut self.journal, t, h)
+            .inspect_err(|_| self.journal.failed_step());
+        self.tell_notes();
+        let report = done?;
         self.journal.step(&self.component, &report, t, h)?;
         self.last_step = Status::Ok;
         self.event(|| {
@@ -399,6 +407,7 @@ impl Instance {
         if self.broken.is_some() {
             let mut fresh = self.fresh()?;
             fresh.restore(bytes)?;
+            fresh.set_stop_time(self.component.stop_time());
             self.component = fresh;
             self.broken = None;
         } else {

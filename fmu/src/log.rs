@@ -86,16 +86,18 @@ impl Log {
         match &self.sink {
             Sink::Nobody => {}
             Sink::Plain(logger, user) => logger.call(*user, &name, &text(message)),
-            // FMI 2 takes the message for a format: without further arguments, only `%` has to be doubled.
+            // FMI takes `#` for the mark of a value reference, FMI 2 the message for a format as well: without further arguments,
+            // only these have to be doubled.
             Sink::Fmi2(callbacks, instance) => callbacks.logger.call(
                 callbacks.environment,
                 instance,
                 status,
                 &name,
-                &text(&message.replace('%', "%%")),
+                &text(&message.replace('#', "##").replace('%', "%%")),
             ),
             Sink::Fmi3(logger, environment) => {
-                logger.call(*environment, status, &name, &text(message));
+                let message = text(&message.replace('#', "##"));
+                logger.call(*environment, status, &name, &message);
             }
         }
     }

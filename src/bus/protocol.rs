@@ -15,7 +15,7 @@ use super::set_point::SetPoint;
 use super::status::{Status, mode_name};
 use super::values::{self, Assignment};
 use super::verb::Verb;
-use crate::component::{self, Component, Mode, StepReport};
+use crate::component::{self, Component, Mode, StepReport, step_end};
 use crate::wire::Observer;
 use crate::wire::foxglove::LogLevel;
 use crate::wire::messages::AppliedEvent;
@@ -157,7 +157,8 @@ impl Protocol {
         component: &mut Component,
         observer: &mut dyn Observer,
     ) -> Result<(), Refusal> {
-        let h = component.scene().run.step;
+        let time = component.time();
+        let h = step_end(time, component.scene().run.step) - time;
         let outcome = self.guarded(|protocol| {
             protocol.whole()?;
             advance(component, h, "free-running", observer)
@@ -308,9 +309,11 @@ impl Protocol {
         }
         // The end is a whole number of nanoseconds, made a time once, so that any number of steps does not drift. Over
         // 1e9 is the nearest f64; times 1e-9 is one bit off for many. The sum saturates far beyond any run.
-        let h = request.dt_ns.map_or(component.scene().run.step, |dt| {
-            now.saturating_add_unsigned(dt) as f64 / 1e9 - component.time()
-        });
+        let end = match request.dt_ns {
+            Some(dt) => now.saturating_add_unsigned(dt) as f64 / 1e9,
+            None => step_end(component.time(), component.scene().run.step),
+        };
+        let h = end - component.time();
         let assignment = Assignment::resolve(component.variables(), &request.inputs)?;
         let rows = match &request.outputs {
             Some(names) => values::rows(component.variables(), Some(names))?,
@@ -432,7 +435,9 @@ fn advance(
     observer: &mut dyn Observer,
 ) -> Result<StepReport, Refusal> {
     let t = component.time();
-    match component.do_step(t, h) {
+    let done = component.do_step(t, h);
+    tell_clamped(component, observer);
+    match done {
         Ok(report) => {
             observer.on_step(component, &report, t, h, source);
             Ok(report)

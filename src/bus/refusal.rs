@@ -109,7 +109,7 @@ mod tests {
             (component::Error::Setup(String::new()), Code::Internal),
             (
                 component::Error::NotAllowedNow {
-                    call: "do_step",
+                    call: "do_step".to_owned(),
                     mode: Mode::Failed,
                     allowed: String::new(),
                 },

@@ -12,7 +12,7 @@ impl Component {
     /// Sets variables, all or none. `values` holds the flat values of all references, one after the other.
     ///
     /// An input is held from here on; a slope that was given before is dropped. An input that is out of range by a
-    /// billionth of the range, which rounding may do, is clamped; by more only if `saturate_inputs` is set, and then
+    /// billionth of the range, which rounding may do, is clamped; by more, also by a slope, only if `saturate_inputs` is set, and then
     /// [`Component::take_notes`] tells. Fixed parameters take effect together, at [`Component::settle`].
     ///
     /// # Errors
@@ -69,10 +69,7 @@ impl Component {
                 return Ok(clamped);
             }
             if self.life.saturate_inputs {
-                notes.push(format!(
-                    "{}: found {value}, clamped to {clamped}, because saturate_inputs is true",
-                    row.name
-                ));
+                notes.push(saturated(&row.name, value, clamped));
                 return Ok(clamped);
             }
         }
@@ -223,7 +220,7 @@ impl Component {
                     ));
                 }
             };
-            lifecycle::check(kind, self.life.mode)?;
+            lifecycle::check(kind, self.life.mode).map_err(|error| error.about(&row.name))?;
         }
         Ok(rows)
     }
@@ -248,6 +245,11 @@ impl Component {
         }
         Ok(())
     }
+}
+
+/// What is told of an input that was clamped.
+pub(super) fn saturated(what: &str, found: f64, clamped: f64) -> String {
+    format!("{what}: found {found}, clamped to {clamped}, because saturate_inputs is true")
 }
 
 /// Finite, in range, whole where it must be.

@@ -1,5 +1,6 @@
 //! One communication step: check, advance the engine to t + h, sample outputs.
 
+use super::access::saturated;
 use super::engine::{Advance, Ramp, SolverError};
 use super::lifecycle::{self, Call};
 use super::outputs::{self, FlowMass};
@@ -59,7 +60,8 @@ impl Component {
         lifecycle::check(Call::DoStep, self.life.mode)?;
         let wanted = self.check_step(t, h)?;
         let start = self.life.time;
-        self.check_ramps(wanted - start)?;
+        let saturated = self.check_ramps(wanted - start)?;
+        self.notes.extend(saturated);
         let before = FlowMass::now(self.engine.devices());
         let advanced = match watcher {
             None => {
@@ -68,15 +70,9 @@ impl Component {
             }
             Some(watcher) => self.advance_watched((start, wanted), &before, watcher),
         };
-        let (advance, end) = advanced.map_err(|why| {
-            self.life.mode = Mode::Failed;
-            Error::Solver(why.to_string())
-        })?;
+        let (advance, end) = advanced.map_err(|why| self.fail(why.to_string()))?;
         let outputs = outputs::sample(&self.table, self.engine.as_ref(), &before, end - start)
-            .map_err(|why| {
-                self.life.mode = Mode::Failed;
-                Error::Solver(format!("at t = {end} s: {why}"))
-            })?;
+            .map_err(|why| self.fail(format!("at t = {end} s: {why}")))?;
         self.life.before = std::mem::replace(&mut self.life.outputs, outputs);
         self.life.steps = [end - start, self.life.steps[0]];
         self.life.time = end;
@@ -90,6 +86,12 @@ impl Component {
             bound_by: advance.bound_by,
             iterations: advance.iterations,
         })
+    }
+
+    fn fail(&mut self, why: String) -> Error {
+        self.life.mode = Mode::Failed;
+        self.step_failed = true;
+        Error::Solver(why)
     }
 
     /// One internal step after the other; gives the end that was met.
@@ -138,8 +140,9 @@ impl Component {
         if !is_same_time(t, time) {
             return refuse("t", t, format!("{time} s, the current time"));
         }
-        if !(h.is_finite() && h > 0.0) {
-            return refuse("h", h, "a finite step above 0 s".to_owned());
+        if !(h.is_finite() && h >= f64::MIN_POSITIVE) {
+            let allowed = "a finite step above 0 s, not denormal";
+            return refuse("h", h, allowed.to_owned());
         }
         let end = t + h;
         if end <= time {
@@ -158,8 +161,10 @@ impl Component {
         }
     }
 
-    /// Inputs stay in range over the step, but for the rounding of the slope.
-    fn check_ramps(&self, h: f64) -> Result<(), Error> {
+    /// Inputs stay in range over the step, but for the rounding of the slope; where `saturate_inputs` lets them end
+    /// beyond, a note each.
+    fn check_ramps(&self, h: f64) -> Result<Vec<String>, Error> {
+        let mut notes = Vec::new();
         let inputs = &self.life.inputs;
         let openings = inputs.gate_opening.iter().zip(&self.scene.gates);
         let rates = inputs.inflow_rate.iter().zip(&self.scene.inflows);
@@ -168,16 +173,22 @@ impl Component {
         for (ramp, name, most) in openings.chain(rates) {
             let reached = ramp.at(h);
             let slack = SLOPE_SLACK * most;
-            if ramp.slope != 0.0 && !(-slack..=most + slack).contains(&reached) {
+            if ramp.slope == 0.0 || (-slack..=most + slack).contains(&reached) {
+                continue;
+            }
+            let what = format!("{name} at the end of the step, by its slope {}", ramp.slope);
+            // An end that is not finite cannot be held to a range.
+            if !self.life.saturate_inputs || !reached.is_finite() {
                 return Err(Error::BadArgument {
                     call: "do_step",
-                    what: format!("{name} at the end of the step, by its slope {}", ramp.slope),
+                    what,
                     found: reached.to_string(),
                     allowed: format!("0 to {most}"),
                 });
             }
+            notes.push(saturated(&what, reached, reached.clamp(0.0, most)));
         }
-        Ok(())
+        Ok(notes)
     }
 
     /// Inputs hold the value they reached, inside their range; slopes were for one step.

@@ -24,7 +24,7 @@ impl Ramp {
     }
 }
 
-/// What the orchestrator wants during one communication step; in range at both of its ends.
+/// What the orchestrator wants during one communication step; held within its range where a slope leads out of it.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Inputs {
     /// Opening wanted of each gate, in the scene's order [1], 0 to 1.

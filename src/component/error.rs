@@ -12,8 +12,8 @@ pub enum Error {
     /// A call in the wrong mode.
     #[error("{call} is not allowed in mode {mode:?}; allowed in {allowed}")]
     NotAllowedNow {
-        /// The call.
-        call: &'static str,
+        /// The call, with the variable if it is about one.
+        call: String,
         /// The mode it came in.
         mode: Mode,
         /// Modes in which it is allowed.
@@ -37,6 +37,16 @@ pub enum Error {
     /// Saved bytes that cannot be used.
     #[error("saved state refused: {0}")]
     Snapshot(String),
+}
+
+impl Error {
+    /// With the variable that a call in the wrong mode was about.
+    pub(super) fn about(mut self, variable: &str) -> Self {
+        if let Self::NotAllowedNow { call, .. } = &mut self {
+            *call = format!("{call} ({variable})");
+        }
+        self
+    }
 }
 
 /// How bad an error is; adapters map this to FMI status, C code, exit code or bus reply.

@@ -56,7 +56,7 @@ pub(super) fn check(call: Call, mode: Mode) -> Result<(), Error> {
                 .map(|(m, _)| format!("{m:?}"))
                 .collect();
             return Err(Error::NotAllowedNow {
-                call: name,
+                call: name.to_owned(),
                 mode,
                 allowed: names.join(" or "),
             });

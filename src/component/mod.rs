@@ -29,7 +29,7 @@ mod watch;
 
 pub use error::{Error, Severity};
 pub use host::HostSettings;
-pub use points::next_point;
+pub use points::{next_point, step_end};
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport, Totals};
 pub use status::Status;
 pub use variables::{
@@ -87,6 +87,8 @@ pub struct Component {
     notes: Vec<String>,
     /// For the host: no part of the state.
     host: HostSettings,
+    /// See [`Component::step_failed`]: no part of the state.
+    step_failed: bool,
     life: Life,
 }
 
@@ -96,7 +98,7 @@ struct Life {
     mode: Mode,
     /// Simulated time [s].
     time: f64,
-    /// No step may end later [s].
+    /// No step may end later [s]: the orchestrator's, no part of what is saved.
     stop: Option<f64>,
     communication_steps: u64,
     inputs: Inputs,
@@ -134,6 +136,7 @@ impl Component {
             own_threads: threads,
             notes: Vec::new(),
             host: HostSettings::of(scene),
+            step_failed: false,
             life,
         })
     }
@@ -193,6 +196,13 @@ impl Component {
         self.life.mode
     }
 
+    /// Whether a step has failed since the last reset or restored state: then no calls that were accepted lead to the
+    /// state that it is in, also when it has been terminated.
+    #[must_use]
+    pub fn step_failed(&self) -> bool {
+        self.step_failed
+    }
+
     /// Simulated time [s]: that of the last good step.
     #[must_use]
     pub fn time(&self) -> f64 {
@@ -203,6 +213,11 @@ impl Component {
     #[must_use]
     pub fn stop_time(&self) -> Option<f64> {
         self.life.stop
+    }
+
+    /// Says so to a component that came to its time by a saved state and not by [`Component::initialize`]. `None`: no end.
+    pub fn set_stop_time(&mut self, stop: Option<f64>) {
+        self.life.stop = stop;
     }
 
     /// Instantiated -> Initialization. `stop`: no step may end later [s].
@@ -223,12 +238,12 @@ impl Component {
             return refuse("start time", start, "a finite time".to_owned());
         }
         if let Some(stop) = stop
-            && !(stop.is_finite() && stop > start)
+            && !(stop.is_finite() && stop >= start)
         {
             return refuse(
                 "stop time",
                 stop,
-                format!("a finite time after {start} s, the start"),
+                format!("a finite time from {start} s, the start, on"),
             );
         }
         self.life.mode = Mode::Initialization;
@@ -261,16 +276,16 @@ impl Component {
     }
 
     /// Everything that can change a later bit, as bytes: versioned header, scene fingerprint, checksum. Allowed in
-    /// every mode; a failed component saves as failed.
+    /// every mode; a failed component saves as failed. The stop time is the orchestrator's and not among it.
     ///
     /// # Errors
     /// [`Error::Snapshot`].
     pub fn save(&self) -> Result<Vec<u8>, Error> {
-        let payload = self.payload(&self.life).map_err(Error::Snapshot)?;
+        let payload = self.payload().map_err(Error::Snapshot)?;
         Ok(snapshot::seal(&self.fingerprint, &payload))
     }
 
-    /// Goes back (or forth) to saved bytes, also from another process. Allowed in every mode.
+    /// Goes back (or forth) to saved bytes, also from another process; the stop time stays. Allowed in every mode.
     ///
     /// # Errors
     /// [`Error::Snapshot`] for bytes of another version or scene, cut short or corrupt; the component stays as it was.
@@ -314,13 +329,17 @@ impl Component {
         Ok((life, engine))
     }
 
-    /// The state without header: length of life, life, engine. While parameters wait for their engine it is that of
-    /// the start, and nothing stands for it.
-    fn payload(&self, life: &Life) -> Result<Vec<u8>, String> {
+    /// The state without header and stop time: length of life, life, engine. While parameters wait for their engine it
+    /// is that of the start, and nothing stands for it.
+    fn payload(&self) -> Result<Vec<u8>, String> {
+        let life = Life {
+            stop: None,
+            ..self.life.clone()
+        };
         if self.is_unsettled() {
-            return snapshot::join(life, &[]);
+            return snapshot::join(&life, &[]);
         }
-        snapshot::join(life, &self.engine.save()?)
+        snapshot::join(&life, &self.engine.save()?)
     }
 
     /// Back to Instantiated with start values, as after `new` (threads as [`Component::set_threads`] gave them). Allowed in
@@ -335,6 +354,7 @@ impl Component {
         self.built = self.life.parameters.clone();
         self.host = HostSettings::of(&self.base);
         self.notes.clear();
+        self.step_failed = false;
         Ok(())
     }
 
@@ -429,12 +449,8 @@ impl Component {
     /// same bits.
     #[must_use]
     pub fn state_hash(&self) -> String {
-        let life = Life {
-            stop: None,
-            ..self.life.clone()
-        };
         // A state too large to encode has no hash; its error text stands in, so that it equals no other state's.
-        self.payload(&life)
+        self.payload()
             .map_or_else(|why| why, |payload| snapshot::hash(&payload))
     }
 }

@@ -63,8 +63,12 @@ impl Component {
             self.built.clone_from(&life.parameters);
             (self.scene, self.engine) = (scene, fresh);
         }
-        self.life = life;
+        self.life = Life {
+            stop: self.life.stop,
+            ..life
+        };
         self.notes.clear();
+        self.step_failed = false;
         Ok(())
     }
 }

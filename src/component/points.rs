@@ -1,7 +1,8 @@
 //! Runs without an orchestrator: communication points and scheduled inputs.
 //!
 //! Points are whole multiples of the communication step, so that times never drift and a resumed run meets the points
-//! of an unbroken one.
+//! of an unbroken one. Of a step of whole nanoseconds they are the nearest numbers to whole nanoseconds, which are the times
+//! on the wire.
 
 use super::{Component, ValueReference};
 use crate::scene::InputTarget;
@@ -16,12 +17,38 @@ pub fn next_point(time: f64, step: f64, until: f64) -> Option<f64> {
     if time >= until - SLACK * step {
         return None;
     }
-    let multiple = ((time / step + SLACK).floor() + 1.0) * step;
+    let multiple = multiple((time / step + SLACK).floor() + 1.0, step);
     Some(if multiple > until - SLACK * step {
         until
     } else {
         multiple
     })
+}
+
+/// The end of a step of this length from `time` [s]: the next multiple if it starts at one.
+#[must_use]
+pub fn step_end(time: f64, step: f64) -> f64 {
+    let count = (time / step).round();
+    if (time - count * step).abs() <= SLACK * step {
+        multiple(count + 1.0, step)
+    } else {
+        time + step
+    }
+}
+
+/// count x step [s].
+fn multiple(count: f64, step: f64) -> f64 {
+    const PER_SECOND: f64 = 1e9;
+    // Below this every whole number is a double.
+    const EXACT: f64 = (1_u64 << 53) as f64;
+    let nanoseconds = (step * PER_SECOND).round();
+    let whole = (step - nanoseconds / PER_SECOND).abs() <= f64::EPSILON * step;
+    if whole && count * nanoseconds < EXACT {
+        // Over 1e9 is the nearest double; times 1e-9 is one bit off for many.
+        count * nanoseconds / PER_SECOND
+    } else {
+        count * step
+    }
 }
 
 impl Component {
@@ -47,7 +74,7 @@ impl Component {
 
 #[cfg(test)]
 mod tests {
-    use super::next_point as next;
+    use super::{next_point as next, step_end};
 
     #[test]
     fn points_are_multiples_and_the_end_is_met_exactly() {
@@ -56,10 +83,14 @@ mod tests {
         while let Some(point) = next(points[points.len() - 1], step, until) {
             points.push(point);
         }
-        assert_eq!(points, [0.0, 0.1, 0.2, 3.0 * 0.1, 0.35]);
-        // 3 x 0.1 is one bit more than 0.3: the end wins, there is no step of one bit.
+        // 3 x 0.1 is one bit more than 0.3.
+        assert_eq!(points, [0.0, 0.1, 0.2, 0.3, 0.35]);
         assert_eq!(next(0.2, 0.1, 0.3), Some(0.3));
         assert_eq!(next(0.3, 0.1, 0.3), None);
+        // A step that is no whole number of nanoseconds; the end wins, there is no step of one bit.
+        let third = 0.1 / 3.0;
+        assert_eq!(next(2.0 * third, third, 1.0), Some(3.0 * third));
+        assert_eq!(next(2.0 * third, third, 0.1), Some(0.1));
         // A start between two points goes to the next one.
         assert_eq!(next(0.15, 0.1, 1.0), Some(0.2));
     }
@@ -72,7 +103,19 @@ mod tests {
             let point = next(time, step, 1e9).unwrap();
             // What the component reaches: time + h, bit for bit.
             time += point - time;
-            assert_eq!(time.to_bits(), (f64::from(count) * step).to_bits());
+            assert_eq!(time.to_bits(), (f64::from(count) / 1e3).to_bits());
         }
+    }
+
+    #[test]
+    fn a_step_ends_at_the_next_point_if_it_starts_at_one() {
+        let (step, mut time) = (5e-3, 0.0);
+        for count in 1..=100_000_u32 {
+            let end = step_end(time, step);
+            assert_eq!(Some(end), next(time, step, 1e9));
+            time += end - time;
+            assert_eq!(time.to_bits(), (f64::from(5 * count) / 1e3).to_bits());
+        }
+        assert_eq!(step_end(0.0125, 0.005), 0.0175);
     }
 }

@@ -40,6 +40,8 @@ struct Simulation<const D: usize> {
     slept_at: Option<u64>,
     devices: Devices,
     walls: usize,
+    /// Largest rate of each inflow [kg/s].
+    most_rate: Vec<f64>,
     spacing: f64,
     geometry: Geometry,
     lower: Vector<D>,
@@ -74,6 +76,7 @@ impl<const D: usize> Simulation<D> {
             slept_at: None,
             devices: Devices::default(),
             walls: scene.walls.len(),
+            most_rate: scene.inflows.iter().map(|i| i.max_rate).collect(),
             spacing: scene.numerics.spacing,
             geometry: scene::geometry(scene),
             lower,
@@ -172,8 +175,13 @@ impl<const D: usize> Simulation<D> {
         report: &mut Advance,
     ) -> Result<(), crate::solver::SolverError> {
         let elapsed = self.state.time - start;
-        let openings: Vec<f64> = inputs.gate_opening.iter().map(|r| r.at(elapsed)).collect();
-        let rates: Vec<f64> = inputs.inflow_rate.iter().map(|r| r.at(elapsed)).collect();
+        // A slope may lead out of the range, by rounding or where inputs are saturated.
+        let openings = inputs.gate_opening.iter();
+        let openings: Vec<f64> = openings.map(|r| r.at(elapsed).clamp(0.0, 1.0)).collect();
+        let rates = inputs.inflow_rate.iter().zip(&self.most_rate);
+        let rates: Vec<f64> = rates
+            .map(|(r, most)| r.at(elapsed).clamp(0.0, *most))
+            .collect();
         let Self {
             state,
             solver,

@@ -10,6 +10,15 @@ use super::variables::{Causality, Source, ValueKind, Variability, Variable};
 use super::{Component, Error, ValueReference};
 use crate::scene::GaugeKind;
 
+/// Outputs at two points in time, and what lies before them.
+#[derive(Clone, Copy)]
+struct Points<'a> {
+    now: &'a [f64],
+    before: &'a [f64],
+    /// Time between the points, and length of the step before; 0 where there was none [s].
+    steps: [f64; 2],
+}
+
 impl Component {
     /// First derivatives of continuous outputs with respect to time, as of the last communication point, in each
     /// variable's unit per second: `values` flat as in [`Component::get`]. 0 before the first step, and where a gauge
@@ -20,6 +29,35 @@ impl Component {
     /// continuous output.
     pub fn output_derivatives(
         &self,
+        references: &[ValueReference],
+        values: &mut [f64],
+    ) -> Result<(), Error> {
+        let points = Points {
+            now: &self.life.outputs,
+            before: &self.life.before,
+            steps: self.life.steps,
+        };
+        self.slopes_between(points, references, values)
+    }
+
+    /// As [`Component::output_derivatives`], inside a step that has come to `time` [s] with these outputs.
+    pub(super) fn output_derivatives_within(
+        &self,
+        (start, time, outputs): (f64, f64, &[f64]),
+        references: &[ValueReference],
+        values: &mut [f64],
+    ) -> Result<(), Error> {
+        let points = Points {
+            now: outputs,
+            before: &self.life.outputs,
+            steps: [time - start, self.life.steps[0]],
+        };
+        self.slopes_between(points, references, values)
+    }
+
+    fn slopes_between(
+        &self,
+        points: Points<'_>,
         references: &[ValueReference],
         values: &mut [f64],
     ) -> Result<(), Error> {
@@ -42,26 +80,26 @@ impl Component {
         for row in rows {
             // The lengths were checked above.
             let (mine, others) = rest.split_at_mut(row.len());
-            self.slope(row, mine);
+            self.slope(points, row, mine);
             rest = others;
         }
         Ok(())
     }
 
-    fn slope(&self, row: &Variable, values: &mut [f64]) {
-        let [last, earlier] = self.life.steps;
+    fn slope(&self, points: Points<'_>, row: &Variable, values: &mut [f64]) {
+        let [last, earlier] = points.steps;
         let span = match self.table.source(row.reference) {
             Some(source) if self.is_mean(*source) && earlier > 0.0 => 0.5 * (last + earlier),
             Some(source) if self.is_mean(*source) => 0.0,
             _ => last,
         };
-        if span <= 0.0 || !self.was_valid(row) {
+        if span <= 0.0 || !self.was_valid(points, row) {
             values.fill(0.0);
             return;
         }
         let offset = self.table.offset(row);
         for (k, value) in values.iter_mut().enumerate() {
-            *value = (self.life.outputs[offset + k] - self.life.before[offset + k]) / span;
+            *value = (points.now[offset + k] - points.before[offset + k]) / span;
         }
     }
 
@@ -79,7 +117,7 @@ impl Component {
     }
 
     /// Whether the row's gauge read something at both points; other outputs always do.
-    fn was_valid(&self, row: &Variable) -> bool {
+    fn was_valid(&self, points: Points<'_>, row: &Variable) -> bool {
         let Some(Source::Reading { gauge, .. }) = self.table.source(row.reference) else {
             return true;
         };
@@ -88,6 +126,6 @@ impl Component {
             return true;
         };
         let offset = self.table.offset(flag);
-        self.life.outputs[offset] == 0.0 && self.life.before[offset] == 0.0
+        points.now[offset] == 0.0 && points.before[offset] == 0.0
     }
 }

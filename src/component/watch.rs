@@ -47,21 +47,43 @@ impl Intermediate<'_> {
     /// # Errors
     /// As [`Component::get`]; [`Error::Solver`] if an output is not finite.
     pub fn get(&mut self, references: &[ValueReference], values: &mut [f64]) -> Result<(), Error> {
-        let outputs = match self.outputs.take() {
-            Some(outputs) => outputs,
+        let outputs = self.sampled()?;
+        let found = self
+            .component
+            .get_as(references, values, self.time, &outputs);
+        self.outputs = Some(outputs);
+        found
+    }
+
+    /// As [`Component::output_derivatives`], at this time: from the start of the step on.
+    ///
+    /// # Errors
+    /// As [`Component::output_derivatives`]; [`Error::Solver`] if an output is not finite.
+    pub fn output_derivatives(
+        &mut self,
+        references: &[ValueReference],
+        values: &mut [f64],
+    ) -> Result<(), Error> {
+        let outputs = self.sampled()?;
+        let now = (self.start, self.time, outputs.as_slice());
+        let found = self
+            .component
+            .output_derivatives_within(now, references, values);
+        self.outputs = Some(outputs);
+        found
+    }
+
+    fn sampled(&mut self) -> Result<Vec<f64>, Error> {
+        match self.outputs.take() {
+            Some(outputs) => Ok(outputs),
             None => outputs::sample(
                 &self.component.table,
                 self.component.engine.as_ref(),
                 self.before,
                 self.time - self.start,
             )
-            .map_err(|why| Error::Solver(format!("at t = {} s: {why}", self.time)))?,
-        };
-        let found = self
-            .component
-            .get_as(references, values, self.time, &outputs);
-        self.outputs = Some(outputs);
-        found
+            .map_err(|why| Error::Solver(format!("at t = {} s: {why}", self.time))),
+        }
     }
 
     /// Sets inputs for the rest of the step, all or none; a slope is dropped.

@@ -296,7 +296,13 @@ impl Run {
             }
             Body::Scene(update) => {
                 self.done.compared += 1;
-                let own = picture::scene_update(component.scene(), component.time());
+                let mut own = picture::scene_update(component.scene(), component.time());
+                if component.mode() == Mode::Instantiated {
+                    // Drawn at the start time, which this component is told of next.
+                    for (own, logged) in own.entities.iter_mut().zip(&update.entities) {
+                        own.timestamp.clone_from(&logged.timestamp);
+                    }
+                }
                 (own != update).then(|| ("scene".to_owned(), "it is drawn otherwise".to_owned()))
             }
             Body::Command(_) | Body::Log(_) | Body::Other { .. } => None,
@@ -528,7 +534,7 @@ impl Run {
             if mode == "Terminated" && self.component.mode() == Mode::Stepping {
                 self.component.terminate()?;
             }
-            // A step that failed left a state that no recorded call leads to.
+            // A step that failed left a state that no recorded call leads to; logs of old have its hash all the same.
             self.done.same_state = (mode != "Failed").then(|| self.component.state_hash() == *hash);
         }
         if let Some(recorder) = self.recorder.take() {

@@ -222,7 +222,7 @@ impl Recorder {
 
     /// The state was saved by `source`, and the component may be brought back to it. `state` is its checksum
     /// ([`saved_checksum`](crate::component::saved_checksum)); the state itself is not written: who runs the log again
-    /// comes by it.
+    /// comes by it. A state that a failed step left is not noted, since nobody comes by that; going back to it is a jump.
     ///
     /// # Errors
     /// [`RecordError::Required`].
@@ -232,6 +232,9 @@ impl Recorder {
         state: &[u8; 32],
         source: &str,
     ) -> Result<(), RecordError> {
+        if component.step_failed() {
+            return self.check();
+        }
         self.saved.insert(*state);
         let times = (component.time(), f64::NAN);
         self.stated(component, AppliedEvent::Save, times, state, source);

@@ -106,8 +106,10 @@ fn failed_step_leaves_time_and_outputs_at_the_last_good_step() {
         "{message}"
     );
 
+    assert!(falling.step_failed());
     let failed = falling.save().unwrap();
     falling.restore(&good).unwrap();
+    assert!(!falling.step_failed());
     assert_eq!((falling.mode(), falling.time()), (Mode::Stepping, time));
     assert!(falling.save().unwrap() == good);
     falling.do_step(time, 0.001 * h).unwrap();
@@ -121,6 +123,52 @@ fn failed_step_leaves_time_and_outputs_at_the_last_good_step() {
     assert_eq!((falling.mode(), falling.time()), (Mode::Instantiated, 0.0));
     falling.initialize(0.0, None).unwrap();
     step(&mut falling, 1);
+}
+
+/// Saved bytes hold no stop time: who takes them over goes as far as it was told itself.
+#[test]
+fn the_stop_time_stays_with_whom_it_was_told() {
+    let until = |stop: f64| {
+        let mut component = stepping("tests/scenes/small_silo.toml");
+        component.reset().unwrap();
+        component.initialize(0.0, Some(stop)).unwrap();
+        component
+    };
+    let h = 0.005;
+    let (mut short, mut long) = (until(h), until(4.0 * h));
+    short.do_step(0.0, h).unwrap();
+    let bytes = short.save().unwrap();
+    let error = short.do_step(h, h).unwrap_err().to_string();
+    assert!(error.contains("the stop time"), "{error}");
+    long.restore(&bytes).unwrap();
+    assert_eq!(long.stop_time(), Some(4.0 * h));
+    long.do_step(h, h).unwrap();
+    short.restore(&long.save().unwrap()).unwrap();
+    assert!(short.do_step(2.0 * h, h).is_err());
+    // Initial values only.
+    let mut none = until(0.0);
+    assert!(none.do_step(0.0, h).is_err());
+}
+
+/// A slope out of the range is clamped where an input would be, and told.
+#[test]
+fn slopes_are_saturated_as_inputs_are() {
+    let mut component = stepping("tests/scenes/small_silo.toml");
+    set(&mut component, "gate.main.opening", 0.9);
+    let gate = component.variables().by_name("gate.main.opening");
+    let gate = [gate.unwrap().reference];
+    let h = 0.005;
+    component.set_input_derivatives(&gate, &[100.0]).unwrap();
+    let error = component.do_step(0.0, h).unwrap_err().to_string();
+    assert!(error.contains("allowed 0 to 1"), "{error}");
+    set(&mut component, "saturate_inputs", 1.0);
+    component.do_step(0.0, h).unwrap();
+    let notes = component.take_notes();
+    assert!(notes.len() == 1 && notes[0].contains("clamped to 1"), "{notes:?}");
+    assert_eq!(value(&component, "gate.main.opening"), 1.0);
+    component.set_input_derivatives(&gate, &[f64::MAX]).unwrap();
+    component.do_step(h, h).unwrap();
+    assert_eq!(value(&component, "gate.main.opening"), 1.0);
 }
 
 #[test]

@@ -251,11 +251,13 @@ def test_reset_ends_the_log_and_the_same_path_goes_on_beside_it(version, tmp_pat
 def test_a_log_that_cannot_begin_is_refused_and_the_path_can_be_corrected(version, tmp_path):
     path = tmp_path / "run.mcap"
     first, second = logged(version, path), Fmu(FMUS[version])
-    for bad, why in ((path, "exists already"), (tmp_path / "none" / "run.mcap", "cannot create log file")):
+    for bad, why in ((path, "exists already"), (tmp_path / "#r5#" / "run.mcap", "cannot create log file")):
         second.messages.clear()
         with pytest.raises(FMICallException):
             second.initialize(log__path=str(bad))
         assert why in second.messages[-1][2] and "ExitInitializationMode" in second.messages[-1][2]
+        # A single # would be the mark of a value reference.
+        assert "#r5#" not in second.messages[-1][2].replace("##", "")
         second.set("log.path", str(tmp_path / f"{why[0]}.mcap"))
         second.fmu.exitInitializationMode()
         second.reset()

@@ -39,6 +39,14 @@ unsafe extern "C" {
     fn fmi3ExitInitializationMode(c: *mut c_void) -> i32;
     fn fmi3GetFloat64(c: *mut c_void, r: *const u32, n: usize, v: *mut f64, m: usize) -> i32;
     fn fmi3SetFloat64(c: *mut c_void, r: *const u32, n: usize, v: *const f64, m: usize) -> i32;
+    fn fmi3GetOutputDerivatives(
+        c: *mut c_void,
+        r: *const u32,
+        n: usize,
+        orders: *const i32,
+        v: *mut f64,
+        m: usize,
+    ) -> i32;
     fn fmi3Reset(c: *mut c_void) -> i32;
     fn fmi3DoStep(
         c: *mut c_void,
@@ -71,6 +79,8 @@ struct Seen {
     time: f64,
     flags: [bool; 4],
     read: [f64; 2],
+    /// Slope of the depth.
+    slope: f64,
 }
 
 /// What the environment pointer points to.
@@ -102,6 +112,7 @@ extern "C" fn update(
     let references = [0, plan.depth];
     let status = unsafe { fmi3GetFloat64(instance, references.as_ptr(), 2, read.as_mut_ptr(), 2) };
     assert_eq!(status, 0, "{:?}", world.messages);
+    let slope = slope(instance, plan.depth);
     if let Some((reference, value)) = plan.set {
         let status =
             unsafe { fmi3SetFloat64(instance, &raw const reference, 1, &raw const value, 1) };
@@ -126,7 +137,17 @@ extern "C" fn update(
         time,
         flags: [set_requested, get_allowed, step_finished, can_return_early],
         read,
+        slope,
     });
+}
+
+/// First derivative of an output.
+fn slope(c: *mut c_void, reference: u32) -> f64 {
+    let (order, mut value) = (1, f64::NAN);
+    let (r, o, v) = (&raw const reference, &raw const order, &raw mut value);
+    let status = unsafe { fmi3GetOutputDerivatives(c, r, 1, o, v, 1) };
+    assert_eq!(status, 0);
+    value
 }
 
 /// An instance between steps with its gate told to open, its environment, and its gate's reference.
@@ -241,6 +262,7 @@ fn updates_come_after_internal_steps_and_watching_changes_no_bit() {
     for k in 0..4 {
         let t = f64::from(k) * watched.h;
         watched.world.seen.clear();
+        let before = watched.get(watched.depth);
         for rig in [&mut watched, &mut alone] {
             let h = rig.h;
             let (early, last) = rig.step(t, h);
@@ -254,7 +276,12 @@ fn updates_come_after_internal_steps_and_watching_changes_no_bit() {
         assert!(seen.iter().all(|s| s.read[0].to_bits() == s.time.to_bits()));
         let end = seen[seen.len() - 1];
         assert_eq!(end.time.to_bits(), (t + watched.h).to_bits());
-        assert_eq!(end.read[1].to_bits(), watched.get(watched.depth).to_bits());
+        let depth = watched.get(watched.depth);
+        assert_eq!(end.read[1].to_bits(), depth.to_bits());
+        assert_eq!(end.slope, slope(watched.world.instance, watched.depth));
+        assert_eq!(end.slope, (depth - before) / (end.time - t));
+        let first = seen[0];
+        assert_eq!(first.slope, (first.read[1] - before) / (first.time - t));
         assert!(watched.state() == alone.state());
     }
     assert!(alone.world.seen.is_empty());

@@ -125,7 +125,7 @@ impl Handle {
         let entered = slot.door.compare_exchange(FREE, BUSY, acquire, relaxed);
         if entered.is_err() {
             let fault = Fault::border(
-                "another call on this instance is running; an intermediate update may get and set variables only",
+                "another call on this instance is running; an intermediate update may get and set numbers and get slopes of outputs only",
             );
             // The importer's logger is C; what panics here is ours.
             let _ = shield(|| slot.with_guest(|guest| guest.report(call, &fault)));
@@ -138,7 +138,7 @@ impl Handle {
         result
     }
 
-    /// Runs one call that gets or sets variables: between other calls, or while a step has the door open.
+    /// Runs one call that gets or sets numbers: between other calls, or while a step has the door open.
     pub(crate) fn visit<T>(
         &self,
         call: &'static str,

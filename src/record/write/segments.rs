@@ -119,7 +119,7 @@ impl Recorder {
         }
     }
 
-    /// Writes the end (reason, steps, hash of the state, drops) and the summary, and gives the file its final name.
+    /// Writes the end (reason, steps, hash of the state unless a failed step left it, drops) and the summary, and gives the file its final name.
     /// A log that failed before keeps the name that ends in `.part`.
     ///
     /// # Errors
@@ -127,12 +127,13 @@ impl Recorder {
     /// [`Recorder::take_trouble`] would give.
     pub fn finish(mut self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
         self.remember(component);
-        let state = [
-            ("mode".to_owned(), format!("{:?}", component.mode())),
-            ("state_hash".to_owned(), component.state_hash()),
-        ];
+        let mode = ("mode".to_owned(), format!("{:?}", component.mode()));
+        let mut state = BTreeMap::from([mode]);
+        if !component.step_failed() {
+            state.insert("state_hash".to_owned(), component.state_hash());
+        }
         let trouble = self.trouble.take();
-        let finished = self.close(state.into(), reason)?;
+        let finished = self.close(state, reason)?;
         trouble.map_or(Ok(finished), Err)
     }
 

@@ -265,6 +265,61 @@ fn no_changed_byte_of_a_chunk_header_passes_the_check() {
     }
 }
 
+/// FMUs begin their log before they are initialised, at a time of the importer's choice.
+#[test]
+fn a_log_that_starts_at_another_time_runs_again() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let scene = sandgate::scene::load(&python::root().join("tests/scenes/small_silo.toml"));
+    let scene = scene.unwrap_or_else(|why| panic!("{why}"));
+    for start in [2.5, -1.0, 1e9] {
+        let mut component = Component::new(&scene).unwrap();
+        component.enter_initialization(start, None).unwrap();
+        let file = folder.path().join(format!("{start}.mcap"));
+        let options = RecordOptions::of(&component);
+        let mut recorder = Recorder::create(&file, &component, options).unwrap();
+        component.exit_initialization().unwrap();
+        let done = recorder.record_initialization(&component, start, None, "fmi2");
+        done.unwrap();
+        let report = component.do_step(start, 0.005).unwrap();
+        let done = recorder.record_step(&component, &report, start, 0.005, "fmi2");
+        done.unwrap();
+        recorder.finish(&component, "done").unwrap();
+        let done = redrive(&file, &RedriveOptions::default(), &mut |_| {}).unwrap();
+        assert_eq!((done.difference, done.same_state), (None, Some(true)));
+    }
+}
+
+/// A failed step leaves a state that nobody comes by: what was saved of it, and the end, are not compared.
+#[test]
+fn a_log_with_a_failed_step_runs_again_up_to_it() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let scene = sandgate::scene::load(&python::root().join("tests/scenes/no_floor.toml"));
+    let scene = scene.unwrap_or_else(|why| panic!("{why}"));
+    let mut component = Component::new(&scene).unwrap();
+    let file = folder.path().join("failed.mcap");
+    let options = RecordOptions::of(&component);
+    let mut recorder = Recorder::create(&file, &component, options).unwrap();
+    component.initialize(0.0, None).unwrap();
+    let done = recorder.record_initialization(&component, 0.0, None, "c");
+    done.unwrap();
+    let h = scene.run.step;
+    let mut steps = 0;
+    while let Ok(report) = component.do_step(component.time(), h) {
+        let t = report.time - h;
+        let done = recorder.record_step(&component, &report, t, h, "c");
+        done.unwrap();
+        steps += 1;
+    }
+    recorder.record_failed_step();
+    let state = sandgate::component::saved_checksum(&component.save().unwrap()).unwrap();
+    recorder.record_save(&component, &state, "c").unwrap();
+    component.terminate().unwrap();
+    recorder.finish(&component, "terminated").unwrap();
+    let done = redrive(&file, &RedriveOptions::default(), &mut |_| {}).unwrap();
+    assert_eq!((done.difference, done.same_state), (None, None));
+    assert_eq!(done.steps, steps);
+}
+
 #[test]
 fn a_new_run_of_a_log_can_be_logged_with_more_particles() {
     let folder = temp_dir::TempDir::new().unwrap();
