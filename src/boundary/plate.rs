@@ -1,6 +1,6 @@
 //! A gate's plate: a rigid slab that slides along its own length and vanishes behind the end it retracts to.
 
-use super::points::WallPoints;
+use super::points::{ROWS, WallPoints};
 use crate::math::{Vector, add, dot, norm, scale, sub};
 
 /// Share of a point below which it is hidden [1].
@@ -89,6 +89,27 @@ impl<const D: usize> Plate<D> {
         }
     }
 
+    /// Where a shut plate meets the end of a wall, the two bodies touch at a point, and a fluid seeps through between them: fills
+    /// what lies beyond the plate's ends, as far as `is_free`. Beyond the far end it stays until the plate has left it; beyond the
+    /// leading edge it comes out of the edge as that closes the last of the way, and goes as it opens.
+    pub fn fill_corners(&mut self, ends: [bool; 2], is_free: impl Fn(&Vector<D>) -> bool) {
+        if D == 3 {
+            return;
+        }
+        let first = 0.5 * self.step;
+        let across = self.points.iter().filter(|(u, _)| *u == first);
+        let across: Vec<Vector<D>> = across.map(|(_, offset)| *offset).collect();
+        for row in 0..ROWS {
+            let beyond = (row as f64 + 0.5) * self.step;
+            for (end, u) in [-beyond, self.length + beyond].into_iter().enumerate() {
+                let place = |offset: &Vector<D>| add(&add(&self.from, &scale(u, &self.axis)), offset);
+                let fills = across.iter().filter(|o| ends[end] && is_free(&place(o)));
+                let filled: Vec<_> = fills.map(|offset| (u, *offset)).collect();
+                self.points.extend(filled);
+            }
+        }
+    }
+
     /// Adds its points to the wall points, at opening 0.
     pub fn append(&mut self, walls: &mut WallPoints<D>) {
         self.first = walls.len();
@@ -120,12 +141,20 @@ impl<const D: usize> Plate<D> {
     pub fn place(&self, walls: &mut WallPoints<D>, opening: f64, rate: f64) {
         let velocity = self.velocity(rate);
         for (n, (u, offset)) in self.points.iter().enumerate() {
-            let s = opening * self.length + u;
+            let stays = *u > self.length;
+            let s = if stays { *u } else { opening * self.length + u };
             let i = self.first + n;
             walls.position[i] = add(&add(&self.from, &scale(s, &self.axis)), offset);
-            walls.velocity[i] = velocity;
-            // What has slid past the end is hidden, the last point by its share; of that, rounding is nothing.
-            let share = ((self.length - s) / self.step + 0.5).clamp(0.0, 1.0);
+            walls.velocity[i] = if stays { [0.0; D] } else { velocity };
+            // What has slid past the end is hidden, the last point by its share; of that, rounding is nothing. So is what fills the
+            // corner at the leading edge and is in the opening.
+            let share = if stays {
+                (1.0 - opening) * self.length / (ROWS as f64 * self.step)
+            } else {
+                let left = if *u < 0.0 { -s } else { self.length - s };
+                left / self.step + 0.5
+            };
+            let share = share.clamp(0.0, 1.0);
             walls.weight[i] = if share < HIDDEN { 0.0 } else { share };
         }
     }

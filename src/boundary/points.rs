@@ -95,8 +95,9 @@ impl<const D: usize> WallPoints<D> {
         }
     }
 
-    /// Drops points closer than half a spacing to an earlier one (walls that overlap at corners).
-    pub fn drop_doubles(&mut self, spacing: f64) {
+    /// Drops points closer than half a spacing to an earlier one (walls that overlap at corners). `together`: whether two groups
+    /// stay where they are to each other; what would part keeps all of its points.
+    pub fn drop_doubles(&mut self, spacing: f64, together: impl Fn(u16, u16) -> bool) {
         let reach = 0.5 * spacing;
         let cell =
             |x: &Vector<D>| -> [i64; D] { std::array::from_fn(|k| (x[k] / reach).floor() as i64) };
@@ -112,8 +113,10 @@ impl<const D: usize> WallPoints<D> {
                     here[k] + o
                 });
                 seen.get(&c).is_some_and(|v| {
-                    v.iter()
-                        .any(|&j| norm(&sub(&self.position[i], &self.position[j])) < reach)
+                    v.iter().any(|&j| {
+                        norm(&sub(&self.position[i], &self.position[j])) < reach
+                            && together(self.group[i], self.group[j])
+                    })
                 })
             });
             if !near {

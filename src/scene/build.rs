@@ -4,7 +4,7 @@ use crate::boundary::{
     End, GroupSpec, Mover, Plate, ROWS, RigidMotion, WallPoints, box_points, free_ends,
     joined_points, plane_points,
 };
-use crate::math::{Geometry, Vector, add, dot, norm, scale};
+use crate::math::{Geometry, Vector, add, dot, norm, scale, sub};
 use crate::shape::lattice;
 use crate::solver::{Periodic, Plan, Scheme, Sink, Source, three};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
@@ -31,7 +31,6 @@ pub fn narrow<const D: usize>(point: &Point) -> Vector<D> {
 /// A sentence: no particles and no inflow, a particle inside a wall, a periodic side too short for the kernel.
 pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), String> {
     let periodic = periodic::<D>(scene)?;
-    let plates = plates::<D>(scene);
     let walls = match scene.numerics.scheme {
         Scheme::PaperB(_) => elements::<D>(scene),
         Scheme::Implicit | Scheme::PaperA(_) => walls::<D>(scene, &periodic),
@@ -51,6 +50,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         Scheme::Implicit | Scheme::PaperB(_) => Vec::new(),
     };
     let state = state::<D>(scene)?;
+    let plates = plates(scene, &walls, &state.grains.position);
     let plan = Plan {
         numerics: scene.numerics.clone(),
         gravity: narrow(&scene.domain.gravity),
@@ -307,18 +307,17 @@ pub(super) fn group(scene: &Scene, slip: Slip, moves: bool, target: ForceTarget)
 }
 
 /// Directions in which other walls arrive at the first point of an open polyline and leave its last: walls that meet make a
-/// whole corner. Walls that move as a whole take no part, their neighbours would have to change shape.
+/// whole corner, if they stay where they are to each other.
 fn joints(scene: &Scene, wall: usize) -> [Option<[f64; 2]>; 2] {
     let open = |n: usize| match &scene.walls[n] {
-        Wall {
+        other @ Wall {
             geometry:
                 WallGeometry::Polyline {
                     points,
                     closed: false,
                 },
-            rigid: false,
             ..
-        } => Some(points),
+        } if other.moves_with(&scene.walls[wall]) => Some(points),
         _ => None,
     };
     let Some(own) = open(wall) else {
@@ -399,7 +398,8 @@ fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D>
     if scene.dimension == Dimension::Axisymmetric {
         points.retain(|x| x[0] > 0.0);
     }
-    points.drop_doubles(dp);
+    let wall = |group: u16| &scene.walls[group as usize];
+    points.drop_doubles(dp, |a, b| wall(a).moves_with(wall(b)));
     for (n, gate) in scene.gates.iter().enumerate() {
         points
             .groups
@@ -429,18 +429,40 @@ fn movers<const D: usize>(scene: &Scene, points: &WallPoints<D>) -> Vec<Mover<D>
         .collect()
 }
 
-fn plates<const D: usize>(scene: &Scene) -> Vec<Plate<D>> {
+/// The plates of the gates, behind fixed walls and what lies there at the start.
+fn plates<const D: usize>(
+    scene: &Scene,
+    walls: &WallPoints<D>,
+    grains: &[Vector<D>],
+) -> Vec<Plate<D>> {
     let dp = scene.numerics.spacing;
     let number = |n: usize| (scene.walls.len() + n) as u16;
+    let mut corners: Vec<Vector<D>> = Vec::new();
+    for wall in scene.walls.iter().filter(|w| !w.rigid) {
+        if let WallGeometry::Polyline { points, .. } = &wall.geometry {
+            let wide = |x: &[f64; 2]| narrow(&[x[0], x[1], 0.0]);
+            corners.extend(points.iter().map(wide));
+        }
+    }
+    let ghosts = scene.numerics.scheme != Scheme::Implicit;
     let plate = |(n, g): (usize, &super::Gate)| {
-        Plate::new(
-            [narrow(&g.from), narrow(&g.to)],
+        let ends: [Vector<D>; 2] = [narrow(&g.from), narrow(&g.to)];
+        let mut plate = Plate::new(
+            ends,
             &narrow(&g.span),
             g.thickness,
             g.max_speed,
             dp,
             number(n),
-        )
+        );
+        let near = |x: &Vector<D>, y: &Vector<D>, reach: f64| norm(&sub(x, y)) < reach * dp;
+        let meets = |end: &Vector<D>| !ghosts && corners.iter().any(|c| near(c, end, 0.5));
+        let rings = scene.dimension == Dimension::Axisymmetric;
+        plate.fill_corners(ends.each_ref().map(meets), |x| {
+            let mut others = walls.position.iter().chain(grains);
+            !(rings && x[0] <= 0.0) && !others.any(|y| near(x, y, 0.7))
+        });
+        plate
     };
     scene.gates.iter().enumerate().map(plate).collect()
 }

@@ -23,6 +23,7 @@ pub use quality::Quality;
 pub use reference::{reference_markdown, schema};
 pub use types::*;
 
+use std::io::Read as _;
 use std::path::Path;
 
 use raw::{Place, Problems};
@@ -48,22 +49,26 @@ pub fn load(path: &Path) -> Result<Scene, SceneErrors> {
             remedy: remedy.to_owned(),
         }]))
     };
-    let size = match std::fs::metadata(path) {
-        Ok(about) if about.is_file() => about.len(),
-        Ok(_) => {
+    match std::fs::metadata(path) {
+        Ok(about) if about.is_dir() => {
             return refuse(
                 "a folder".into(),
                 "a scene file (TOML)",
                 "give the path of a file, for example cases/silo_gate.toml",
             );
         }
+        Ok(_) => {}
         Err(error) => return refuse(error.to_string(), "a scene file (TOML)", "check the path"),
-    };
-    if size > LARGEST_FILE {
-        let found = format!("{size} bytes");
+    }
+    // A pipe or device does not say its size, nor has it to end.
+    let mut bytes = Vec::new();
+    let read = std::fs::File::open(path)
+        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes));
+    if bytes.len() as u64 > LARGEST_FILE {
+        let found = format!("more than {LARGEST_FILE} bytes");
         return refuse(found, "a scene file of at most 4 MiB", "give a scene file");
     }
-    match std::fs::read(path).map(String::from_utf8) {
+    match read.map(|_| String::from_utf8(bytes)) {
         Ok(Ok(text)) => parse(&file, &text),
         Ok(Err(error)) => {
             let at = error.utf8_error().valid_up_to();

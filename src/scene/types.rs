@@ -167,6 +167,15 @@ pub struct Wall {
     pub rotation: Option<Rotation>,
 }
 
+impl Wall {
+    /// Whether the two stay where they are to each other.
+    #[must_use]
+    pub fn moves_with(&self, other: &Self) -> bool {
+        let motion = |w: &Self| w.rigid.then_some((w.velocity, w.rotation));
+        motion(self) == motion(other)
+    }
+}
+
 /// How a wall turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
