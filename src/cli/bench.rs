@@ -214,7 +214,7 @@ fn precision(args: &Precision) -> Result<(), CliError> {
     } else {
         // What is not there, or was kept by another version, is measured anew.
         let known = bench::stored::<PrecisionRun>(&kept).map_or(Vec::new(), |run| run.measured);
-        let stop = super::stop::on_interrupt()?;
+        let stop = super::stop::on_interrupt("stopping after this measurement")?;
         let mut display = Display::new();
         let run = precision::measure(
             &chosen,
@@ -315,7 +315,7 @@ impl Display {
         self.bar.set_message(text.clone());
         if self.bar.is_hidden() && self.last_line.elapsed() >= LINE_EVERY {
             self.last_line = Instant::now();
-            eprintln!("{:.0} %  {text}", 100.0 * share);
+            tell!("{:.0} %  {text}", 100.0 * share);
         }
     }
 }

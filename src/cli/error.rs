@@ -24,7 +24,7 @@ Exit codes:
   5    a file could not be read or written, or a saved state does not fit
   6    the bus could not be opened or closed
   7    a check found a difference
-  130  stopped by Ctrl-C, after saving";
+  130  stopped by Ctrl-C, SIGTERM or SIGHUP, after saving";
 
 /// Errors of the program.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! `sandgate fmu CASE`: packs the case and the shared library into one FMU file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{CliError, load_scene, quantity, say};
 use crate::fmi::library::Kind;
@@ -14,7 +14,7 @@ pub(super) struct Args {
     /// FMI version: 2 (2.0.5) or 3 (3.0.2), co-simulation
     #[arg(long, value_name = "VERSION", default_value_t = 3, value_parser = clap::value_parser!(u8).range(2..=3))]
     fmi: u8,
-    /// The file to write [default: <case>.fmu in this folder]
+    /// The file to write; one that is there is replaced [default: <case>.fmu in this folder]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// A shared library to put into it, one a platform [default: the one beside this program, or built if this is a
@@ -51,6 +51,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{}.fmu", scene.name)));
+    check_output(args, &output)?;
     let packing = Packing {
         version,
         libraries: libraries(args)?,
@@ -66,6 +67,22 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         scene.name,
         size as f64 / 1e6
     ))
+}
+
+/// The archive replaces what is there, but not what it is made of.
+fn check_output(args: &Args, output: &Path) -> Result<(), CliError> {
+    let same = |other: &Path| match (output.canonicalize(), other.canonicalize()) {
+        (Ok(output), Ok(other)) => output == other,
+        _ => false,
+    };
+    if std::iter::once(&args.case).chain(&args.library).any(|from| same(from)) {
+        return Err(CliError::Usage(format!(
+            "--output: found {}, which the FMU is made of; give the name of the archive, for example {}",
+            output.display(),
+            output.with_extension("fmu").display()
+        )));
+    }
+    Ok(())
 }
 
 impl Args {

@@ -3,11 +3,13 @@
 //!
 //! One subcommand a file, each with an `Args` (as typed, clap) and a `run(&Args)`. Printing is allowed here and
 //! nowhere else in the library. No physics, no list of variables and no rule about lifecycles lives here.
-#![allow(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "this is the one layer that talks to a terminal"
-)]
+
+/// A line on standard error. Where nobody can read it any more it is lost, and what the program does goes on.
+macro_rules! tell {
+    ($($text:tt)*) => {
+        $crate::cli::tell_line(&format!($($text)*))
+    };
+}
 
 mod bench;
 mod clock;
@@ -84,7 +86,7 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(CliError::ReaderGone) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{error}");
+            tell!("{error}");
             ExitCode::from(error.exit_code())
         }
     }
@@ -120,13 +122,23 @@ fn load_scene(path: &Path) -> Result<Scene, CliError> {
     Ok(crate::scene::load(path)?)
 }
 
-/// Prints text to standard output; a reader that has gone away (`| head`) ends the program quietly.
+/// Prints text to standard output. That its reader has gone away (`| head`) is no error and ends nothing: what else the
+/// command does, and its exit code, are the same.
 fn say(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes())
+    let done = out
+        .write_all(text.as_bytes())
         .and_then(|()| out.write_all(b"\n"))
-        .and_then(|()| out.flush())
-        .map_err(cannot_print)
+        .and_then(|()| out.flush());
+    match done.map_err(cannot_print) {
+        Err(CliError::ReaderGone) => Ok(()),
+        done => done,
+    }
+}
+
+/// See `tell!`.
+fn tell_line(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// What a failed write to standard output means.

@@ -104,7 +104,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     };
     let mut component = Component::new(&scene)?;
     component.set_threads(usize::from(args.threads));
-    let stop = stop::on_interrupt()?;
+    let stop = stop::on_interrupt("stopping after this step")?;
     let mut log = match &args.log {
         Some(file) => Some(Log::create(
             file,

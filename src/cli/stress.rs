@@ -142,7 +142,7 @@ fn limits(args: &Args) -> Result<(), CliError> {
         bar.set_message(format!("ETA {eta}  {what}"));
         if bar.is_hidden() && line.elapsed() >= LINE_EVERY {
             line = Instant::now();
-            eprintln!("{:.0} %  ETA {eta}  {what}", 100.0 * share);
+            tell!("{:.0} %  ETA {eta}  {what}", 100.0 * share);
         }
     });
     bar.finish_and_clear();
@@ -230,7 +230,7 @@ fn campaign(args: &Args) -> Result<(), CliError> {
     };
     let journal = store::Journal::open(&args.out, &campaign)?;
     let known = journal.known().to_vec();
-    let stop = stop::on_interrupt()?;
+    let stop = stop::on_interrupt("stopping after these scenes; what was tried is kept")?;
     let display = Mutex::new(Display::new(campaign.count, known.len() as u64));
     let journal = Mutex::new(journal);
     let broken = Mutex::new(None);
@@ -284,7 +284,7 @@ fn keep(args: &Args, campaign: &Campaign, tried: &Tried) -> Result<(), CliError>
         return Ok(());
     };
     let small = if args.shrink > 0 {
-        eprintln!("making {} {} smaller", tried.kind, tried.seed);
+        tell!("making {} {} smaller", tried.kind, tried.seed);
         shrink(&case, &campaign.bounds, args.shrink)
     } else {
         case
@@ -300,7 +300,7 @@ fn keep(args: &Args, campaign: &Campaign, tried: &Tried) -> Result<(), CliError>
         }
     }
     store::write_text(&path, &small.text(&head))?;
-    eprintln!("kept {}", path.display());
+    tell!("kept {}", path.display());
     Ok(())
 }
 
@@ -351,13 +351,13 @@ impl Display {
                 failure.check.name(),
                 failure.what.lines().next().unwrap_or_default()
             );
-            self.bar.suspend(|| eprintln!("{text}"));
+            self.bar.suspend(|| tell!("{text}"));
         }
         self.bar
             .set_message(format!("{} failed  ETA {eta}", self.failed));
         if self.bar.is_hidden() && self.last_line.elapsed() >= LINE_EVERY {
             self.last_line = Instant::now();
-            eprintln!(
+            tell!(
                 "[{}/{}] {} failed; ETA {eta}",
                 self.done, self.count, self.failed
             );

@@ -181,13 +181,13 @@ fn run_missing(args: &Args, store: &Store, members: &[(&str, Member)]) -> Result
     }
     // The longest first, so that no single one is left for one thread at the end.
     jobs.sort_by(|a, b| b.0.total_cmp(&a.0));
-    eprintln!(
+    tell!(
         "{} runs, {} of them finished before",
         members.len(),
         members.len() - jobs.len()
     );
     let (weights, jobs): (Vec<f64>, Vec<Job>) = jobs.into_iter().unzip();
-    let stop = stop::on_interrupt()?;
+    let stop = stop::on_interrupt("stopping after this step and saving")?;
     let tally = Mutex::new(Tally::new(weights));
     let plan = queue::Plan {
         store,
@@ -276,7 +276,7 @@ impl Tally {
             self.weights.len(),
             self.left()
         );
-        self.bar.suspend(|| eprintln!("{text}"));
+        self.bar.suspend(|| tell!("{text}"));
     }
 
     fn share_done(&self) -> f64 {

@@ -61,7 +61,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     }
     out.flush().map_err(cannot_print)?;
     if printed == 0 {
-        eprintln!(
+        tell!(
             "warning: {}: no message has such a topic and time; see both with `sandgate log info`, and note that * stands \
              for one level of a topic, ** for any number",
             args.file.display()

@@ -59,7 +59,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 /// Tells on standard error that a log is not whole. No error: what is there is of use.
 pub(in crate::cli) fn warn_unless_complete(log: &Path, ending: &Ending) {
     if *ending != Ending::Complete {
-        eprintln!("warning: {}: {ending}", log.display());
+        tell!("warning: {}: {ending}", log.display());
     }
 }
 

@@ -47,24 +47,24 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         log: args.log.clone(),
         particles_every: args.particles_every,
     };
-    let mut different = Vec::new();
+    let (mut different, mut said) = (Vec::new(), Ok(()));
     for file in &args.files {
         let mut told = Instant::now();
         let done = redrive(file, &options, &mut |time| {
             if told.elapsed() > Duration::from_secs(5) {
                 told = Instant::now();
-                eprintln!("{}  t = {time:.3} s", file.display());
+                tell!("{}  t = {time:.3} s", file.display());
             }
         })?;
         let line = verdict(file, &done);
         if !done.is_same() && args.check {
             different.push(line);
         } else {
-            say(&line)?;
+            said = said.and(say(&line));
         }
     }
     if different.is_empty() {
-        Ok(())
+        said
     } else {
         Err(CliError::Differs(different.join("\n")))
     }

@@ -91,7 +91,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         realtime_factor: None,
         lost: None,
     };
-    let stop = stop::on_interrupt()?;
+    let stop = stop::on_interrupt("stopping after this message")?;
     let outlet = Outlet::open(&options, args.force)?;
     say(&format!(
         "replaying {} as sandgate/v1/{}",
@@ -130,7 +130,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     ))?;
     let left = player.outlet.wait_until_taken(&stop);
     if left > 0 {
-        eprintln!(
+        tell!(
             "warning: subscribers have not taken the last {left} bytes and more of it, which are lost to them"
         );
     }

@@ -109,7 +109,7 @@ impl RunLog {
         recorded?;
         if let (false, Some(failure)) = (self.warned, &self.failure) {
             self.warned = true;
-            eprintln!("warning: {failure}; the run goes on without its log");
+            tell!("warning: {failure}; the run goes on without its log");
         }
         Ok(())
     }
@@ -137,9 +137,9 @@ impl RunLog {
         if let Some(failure) = finished.failure {
             let missing = format!("{} messages are not in the log", finished.dropped);
             if self.warned {
-                eprintln!("warning: {missing}");
+                tell!("warning: {missing}");
             } else {
-                eprintln!("warning: {failure}; {missing}");
+                tell!("warning: {failure}; {missing}");
             }
             self.failure = Some(format!("{failure}; {missing}"));
         }

@@ -14,7 +14,7 @@ mod series;
 mod session;
 mod summary;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{CliError, load_scene, quantity, stop};
 use session::Session;
@@ -78,7 +78,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         go_on: go_on_command(args),
         log: !args.no_log,
     };
-    let stop = stop::on_interrupt()?;
+    let stop = stop::on_interrupt("stopping after this communication step and saving")?;
     let resumed = match &args.resume {
         Some(file) => Some(std::fs::read(file).map_err(|source| CliError::File {
             action: "read saved state",
@@ -104,9 +104,19 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     session.close(outcome)
 }
 
+/// A path as a shell takes it for one word.
+fn shell_word(path: &Path) -> String {
+    let path = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
+    if !path.is_empty() && path.chars().all(plain) {
+        return path;
+    }
+    format!("'{}'", path.replace('\'', r"'\''"))
+}
+
 /// The command that goes on with this run, without the checkpoint's path.
 fn go_on_command(args: &Args) -> String {
-    let mut command = format!("sandgate run {}", args.case.display());
+    let mut command = format!("sandgate run {}", shell_word(&args.case));
     let mut option = |name: &str, value: Option<f64>| {
         if let Some(value) = value {
             command.push_str(&format!(" {name} {value}"));
@@ -122,4 +132,17 @@ fn go_on_command(args: &Args) -> String {
         command.push_str(" --no-log");
     }
     command
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_one_word_for_a_shell() {
+        let word = |text: &str| shell_word(Path::new(text));
+        assert_eq!(word("out/silo-2/checkpoint.state"), "out/silo-2/checkpoint.state");
+        assert_eq!(word("my out/it's.state"), r"'my out/it'\''s.state'");
+        assert_eq!(word("$HOME"), "'$HOME'");
+    }
 }

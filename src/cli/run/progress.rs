@@ -4,10 +4,13 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::component::Component;
+use crate::component::{Component, Intermediate};
 
 /// Parts a bar is divided into; indicatif counts in whole numbers.
 const PARTS: f64 = 1e6;
+
+/// How often a bar is drawn anew inside a communication step.
+const BAR_EVERY: Duration = Duration::from_millis(200);
 
 /// How often a plain line is printed when nobody watches a terminal.
 const LINE_EVERY: Duration = Duration::from_secs(5);
@@ -19,6 +22,7 @@ pub(super) struct Progress {
     until: f64,
     started: Instant,
     last_line: Instant,
+    last_shown: Instant,
     bar: Option<ProgressBar>,
 }
 
@@ -43,21 +47,34 @@ impl Progress {
             until,
             started: now,
             last_line: now,
+            last_shown: now,
             bar,
         }
     }
 
     /// Shows where the component is.
     pub(super) fn show(&mut self, component: &Component) {
+        self.show_at(component, component.time());
+    }
+
+    /// The same inside a long communication step.
+    pub(super) fn show_within(&mut self, moment: &Intermediate<'_>) {
+        if self.last_shown.elapsed() >= BAR_EVERY {
+            self.show_at(moment.component(), moment.time());
+        }
+    }
+
+    fn show_at(&mut self, component: &Component, time: f64) {
+        self.last_shown = Instant::now();
         match &self.bar {
             Some(bar) => {
-                let share = (component.time() - self.from) / (self.until - self.from);
+                let share = (time - self.from) / (self.until - self.from);
                 bar.set_position((share.clamp(0.0, 1.0) * PARTS) as u64);
-                bar.set_message(self.text(component));
+                bar.set_message(self.text(component, time));
             }
             None if self.last_line.elapsed() >= LINE_EVERY => {
                 self.last_line = Instant::now();
-                eprintln!("{}  {}", self.name, self.text(component));
+                tell!("{}  {}", self.name, self.text(component, time));
             }
             None => {}
         }
@@ -70,19 +87,18 @@ impl Progress {
         }
     }
 
-    fn text(&self, component: &Component) -> String {
+    fn text(&self, component: &Component, time: f64) -> String {
         let ledger = component.ledger();
         let wall = self.started.elapsed().as_secs_f64();
-        let done = component.time() - self.from;
-        let left = if done > 0.0 {
-            let seconds = wall / done * (self.until - component.time()).max(0.0);
-            indicatif::HumanDuration(Duration::from_secs_f64(seconds.ceil())).to_string()
-        } else {
-            "unknown".to_owned()
+        let done = time - self.from;
+        let seconds = wall / done * (self.until - time).max(0.0);
+        let left = match Duration::try_from_secs_f64(seconds.ceil()) {
+            Ok(left) if done > 0.0 => indicatif::HumanDuration(left).to_string(),
+            _ => "unknown".to_owned(),
         };
         format!(
             "t = {:.3} of {} s  ETA {left}  {:.3} x real time  {} particles  mass in {:.4} out {:.4} present {:.4} error {} kg",
-            component.time(),
+            time,
             self.until,
             done / wall.max(1e-9),
             component.statistics().particles,

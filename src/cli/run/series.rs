@@ -129,7 +129,7 @@ impl Series {
             && !std::mem::replace(&mut self.warned, true)
         {
             let text = error.as_warning();
-            eprintln!("warning: {text}; the run goes on and tries again every second");
+            tell!("warning: {text}; the run goes on and tries again every second");
         }
         Ok(())
     }

@@ -9,10 +9,10 @@ use super::folder::Folder;
 use super::log::RunLog;
 use super::progress::Progress;
 use super::series::Series;
-use super::{plot, summary};
+use super::{plot, shell_word, summary};
 use crate::cli::clock::{Stopwatch, cores};
 use crate::cli::{CliError, say};
-use crate::component::{Component, Mode, StepReport, next_point};
+use crate::component::{Component, Mode, StepReport, Wish, next_point};
 use crate::scene::Scene;
 
 /// A run as it is meant.
@@ -55,7 +55,7 @@ impl Outcome {
     fn fails_by(&mut self, done: Result<(), CliError>) {
         match (done, &self) {
             (Ok(()), _) => {}
-            (Err(error), Self::Failed(_)) => eprintln!("warning: {}", error.as_warning()),
+            (Err(error), Self::Failed(_)) => tell!("warning: {}", error.as_warning()),
             (Err(error), _) => *self = Self::Failed(error),
         }
     }
@@ -131,6 +131,10 @@ impl Session {
         case: &Path,
     ) -> Result<Self, CliError> {
         let resumed = component.mode() == Mode::Stepping;
+        // A table that does not fit the saved state is refused before anything is written.
+        let from = component.time();
+        let keep = folder.earlier.is_some().then_some(from);
+        let mut series = Series::open(&folder.file("gauges.csv"), &component, keep)?;
         let mut log = if plan.log {
             RunLog::start(&folder, &component, resumed)?
         } else {
@@ -140,9 +144,6 @@ impl Session {
             component.initialize(0.0, None)?;
             log.initialized(&component, 0.0)?;
         }
-        let from = component.time();
-        let keep = folder.earlier.is_some().then_some(from);
-        let mut series = Series::open(&folder.file("gauges.csv"), &component, keep)?;
         if series.time.last() != Some(&from) {
             series.sample(&component)?;
         }
@@ -178,7 +179,7 @@ impl Session {
             self.plan.until
         );
         let (threads, folder) = (self.threads(), self.folder.path().display());
-        eprintln!(
+        tell!(
             "{}: {what}, {threads} threads, results in {folder}",
             self.case
         );
@@ -213,7 +214,13 @@ impl Session {
         let (references, values) = self.component.scheduled(time);
         self.component.set(&references, &values)?;
         self.log.inputs(&self.component, &references, &values);
-        let report = self.component.do_step(time, next - time)?;
+        let progress = &mut self.progress;
+        let report = self
+            .component
+            .do_step_watched(time, next - time, &mut |moment| {
+                progress.show_within(moment);
+                Wish::GoOn
+            })?;
         self.count(&report);
         self.log.step(&self.component, &report, time, next - time)?;
         self.series.sample(&self.component)?;
@@ -224,7 +231,7 @@ impl Session {
                 Err(error @ CliError::File { .. }) => {
                     if !std::mem::replace(&mut self.warned, true) {
                         let text = error.as_warning();
-                        eprintln!("warning: {text}; the run goes on without new checkpoints");
+                        tell!("warning: {text}; the run goes on without new checkpoints");
                     }
                     self.plan_checkpoint();
                 }
@@ -285,19 +292,20 @@ impl Session {
         let title = &self.component.scene().title;
         match plot::svg(title, &self.series) {
             Ok(svg) => outcome.fails_by(self.folder.replace("gauges.svg", svg.as_bytes())),
-            Err(error) => eprintln!("warning: gauges.svg could not be drawn: {error}"),
+            Err(error) => tell!("warning: gauges.svg could not be drawn: {error}"),
         }
         let (status, error) = outcome.words();
         let summary = self.write_summary(status, error.as_deref());
         outcome.fails_by(summary);
-        say(&summary::table(&self, outcome.words().0))?;
+        let said = say(&summary::table(&self, outcome.words().0));
+        outcome.fails_by(said);
         match outcome {
             Outcome::Finished => Ok(()),
             Outcome::Interrupted => Err(CliError::Interrupted(format!(
                 "interrupted at t = {} s; everything is saved. Go on with:\n  {} --resume {}",
                 self.component.time(),
                 self.plan.go_on,
-                self.folder.file("checkpoint.state").display()
+                shell_word(&self.folder.file("checkpoint.state"))
             ))),
             Outcome::Failed(error) => Err(error),
         }

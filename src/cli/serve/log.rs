@@ -67,7 +67,7 @@ impl Log {
                 // `finish` tells why.
                 self.stop.store(true, Ordering::SeqCst);
             } else {
-                eprintln!("warning: {failure}; the component goes on without its log");
+                tell!("warning: {failure}; the component goes on without its log");
             }
         }
     }
