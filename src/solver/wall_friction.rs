@@ -63,6 +63,9 @@ pub(super) struct Friction<const D: usize> {
 /// Share of a face's area that `spread` gives the direction across all faces, where it has none.
 const ACROSS: f64 = 1e-2;
 
+/// Slip over what full friction would take of it in one step, above which it is sure to slide on [1].
+const SURELY: f64 = 2.0;
+
 /// What a particle sees of walls, as far as it tells whether that is one flat face with friction.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Face<const D: usize> {
@@ -125,7 +128,7 @@ impl<const D: usize> Contact<D> {
 
 impl<const D: usize> Solver<D> {
     /// Makes the friction rows of a step from the contacts of the last sweep.
-    pub(super) fn find_friction(&mut self, state: &mut State<D>) {
+    pub(super) fn find_friction(&mut self, state: &mut State<D>, dt: f64) {
         if !state.grains.wall_friction {
             return;
         }
@@ -142,7 +145,8 @@ impl<const D: usize> Solver<D> {
             let range = first..first + seen.len();
             first = range.end;
             let i = seen[0].i as usize;
-            rows.push(self.friction_row(i, range, seen, &state.grains.velocity[i]));
+            let stopping = dt / state.grains.mass[i];
+            rows.push(self.friction_row(state, i, range, seen, stopping));
         }
         self.friction = Friction { contacts, rows };
         // What has left the walls takes no traction with it.
@@ -156,13 +160,14 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Sums over the contacts of particle i, and its penalty at velocity v.
+    /// Sums over the contacts of particle i, and its penalty; `stopping` is dt/m [s/kg].
     fn friction_row(
         &self,
+        state: &State<D>,
         i: usize,
         range: Range<usize>,
         contacts: &[Contact<D>],
-        v: &Vector<D>,
+        stopping: f64,
     ) -> FrictionRow<D> {
         let mut row = FrictionRow {
             i,
@@ -203,11 +208,16 @@ impl<const D: usize> Solver<D> {
             &across,
         );
         row.spread = inverse(&full);
-        let slip = norm(&row.slip(v));
+        let slip = norm(&row.slip(&state.grains.velocity[i]));
         let pressure = self.effective_pressure()[row.i].max(0.0);
         let stick = friction.min(1.0) * self.numerics.cap_time / (0.5 * self.numerics.spacing);
         row.bears = friction * pressure;
-        row.penalty = pressure * stick.min(0.1 * friction / slip.max(f64::MIN_POSITIVE));
+        // Friction takes some steps to come, so that what comes to rest does not turn round; but is all there in the first of
+        // what slides and cannot come to rest in it.
+        let slides = slip > SURELY * stopping * row.bears * trace(&row.grip);
+        let begins = norm(&state.grains.wall_traction[i]) < 0.5 * row.bears;
+        let share = if slides && begins { 1.0 } else { 0.1 };
+        row.penalty = pressure * stick.min(share * friction / slip.max(f64::MIN_POSITIVE));
         row
     }
 
