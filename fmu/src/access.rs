@@ -194,12 +194,7 @@ pub(crate) fn output_derivatives(
         )));
     }
     out.check(count, "values")?;
-    check_length(
-        from.table(),
-        "get_output_derivatives",
-        references,
-        count,
-    )?;
+    check_length(from.table(), "get_output_derivatives", references, count)?;
     let mut slopes = vec![0.0; count];
     from.slopes(references, &mut slopes)?;
     out.write(&slopes, "values")

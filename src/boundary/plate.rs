@@ -102,7 +102,8 @@ impl<const D: usize> Plate<D> {
         for row in 0..ROWS {
             let beyond = (row as f64 + 0.5) * self.step;
             for (end, u) in [-beyond, self.length + beyond].into_iter().enumerate() {
-                let place = |offset: &Vector<D>| add(&add(&self.from, &scale(u, &self.axis)), offset);
+                let place =
+                    |offset: &Vector<D>| add(&add(&self.from, &scale(u, &self.axis)), offset);
                 let fills = across.iter().filter(|o| ends[end] && is_free(&place(o)));
                 let filled: Vec<_> = fills.map(|offset| (u, *offset)).collect();
                 self.points.extend(filled);

@@ -87,7 +87,9 @@ fn chunk<'k>(key: &'k str, prefix: &str, what: &str, name: &str) -> Result<&'k s
         Some(found) if !found.is_empty() && !found.contains('/') => Ok(found),
         _ => Err(Refusal::new(
             Code::BadRequest,
-            format!("found key {key:?}: {what} goes to {prefix}{name}"),
+            format!(
+                "found key {key:?}: {what} goes to {prefix}{name}, the name as it is, with its dots"
+            ),
         )),
     }
 }

@@ -75,7 +75,10 @@ fn check_output(args: &Args, output: &Path) -> Result<(), CliError> {
         (Ok(output), Ok(other)) => output == other,
         _ => false,
     };
-    if std::iter::once(&args.case).chain(&args.library).any(|from| same(from)) {
+    if std::iter::once(&args.case)
+        .chain(&args.library)
+        .any(|from| same(from))
+    {
         return Err(CliError::Usage(format!(
             "--output: found {}, which the FMU is made of; give the name of the archive, for example {}",
             output.display(),

@@ -64,7 +64,7 @@ enum Then {
 
 const AFTER_HELP: &str = "\
 Keys (docs/zenoh.md has them all), below sandgate/v1/NAME:
-  @rpc/VERB        requests: describe status get set step run pause reset save restore terminate
+  @rpc/VERB        requests: describe status get set step run pause reset save restore log terminate
   in/VARIABLE      set-points, JSON
   out/gauge/NAME   gauges as they are computed, protobuf
   @alive           liveliness token

@@ -359,7 +359,9 @@ impl Display {
             self.last_line = Instant::now();
             tell!(
                 "[{}/{}] {} failed; ETA {eta}",
-                self.done, self.count, self.failed
+                self.done,
+                self.count,
+                self.failed
             );
         }
     }

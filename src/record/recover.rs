@@ -39,6 +39,11 @@ pub enum RecoverError {
     /// The damaged file cannot be read at all.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// The new one cannot be written to its end.
+    #[error(
+        "cannot write the recovered log: {0}; make room or choose another folder, and run again"
+    )]
+    Unfinished(String),
     /// The new one cannot be written.
     #[error(transparent)]
     Write(#[from] RecordError),
@@ -148,7 +153,11 @@ impl Copy {
             self.file.metadata("recovered", note);
         }
         match self.file.finish().1 {
-            Some(failure) => Err(RecordError::Required(failure).into()),
+            Some(failure) => {
+                // The same command can be given again.
+                let _ = std::fs::remove_file(place.part());
+                Err(RecoverError::Unfinished(failure.cause))
+            }
             None => {
                 place.rename()?;
                 Ok(self.recovered)

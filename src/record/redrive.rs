@@ -232,6 +232,7 @@ impl Start {
             restored: self.restored.clone(),
             saved: HashMap::new(),
             report: None,
+            sequences: HashMap::new(),
             done: Redriven {
                 steps: 0,
                 inputs: 0,
@@ -256,6 +257,8 @@ struct Run {
     /// States that it will go back to.
     saved: HashMap<Vec<u8>, Vec<u8>>,
     report: Option<StepReport>,
+    /// Number of the last message of each output.
+    sequences: HashMap<String, u64>,
     done: Redriven,
 }
 
@@ -277,7 +280,14 @@ impl Run {
             }
             Body::Gauge(gauge) => {
                 self.done.compared += 1;
-                self.gauge(&gauge)?
+                let earlier = self.sequences.insert(gauge.name.clone(), gauge.sequence);
+                match earlier.map_or(0, |n| gauge.sequence.saturating_sub(n + 1)) {
+                    0 => self.gauge(&gauge)?,
+                    lost => {
+                        let what = format!("{lost} of its messages before this one are missing");
+                        Some((gauge.name, what))
+                    }
+                }
             }
             Body::Stats(stats) => {
                 self.done.compared += 1;

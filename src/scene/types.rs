@@ -390,6 +390,11 @@ pub struct Run {
     pub until: f64,
 }
 
+impl Run {
+    /// Most communication steps of a run.
+    pub const MOST_STEPS: f64 = 1e8;
+}
+
 /// What an input variable is told over time when nobody else sets it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {

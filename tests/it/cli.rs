@@ -467,6 +467,59 @@ fn ctrl_c_saves_and_says_how_to_go_on() {
     assert_eq!(desk.table("run"), desk.table("whole"));
 }
 
+/// What batch systems, `timeout` and a closed terminal send.
+#[cfg(unix)]
+#[test]
+fn polite_signals_save_too() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    for (name, out) in [("-TERM", "term"), ("-HUP", "hup")] {
+        let args = ["run", &silo, "--out", out, "--until", "1000 s"];
+        let child = running(&desk, &args, out, "summary.json");
+        signal(&child, name);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+        assert_eq!(desk.summary(out)["status"], "interrupted");
+        assert!(desk.path(&format!("{out}/checkpoint.state")).exists());
+    }
+}
+
+/// Neither the exit code nor what is done depends on who reads: standard output may be closed, standard error full.
+#[cfg(target_os = "linux")]
+#[test]
+fn nobody_needs_to_read() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    let program = env!("CARGO_BIN_EXE_sandgate");
+    let bad = desk.path("bad.toml").display().to_string();
+    std::fs::write(&bad, "name = 1\n").unwrap();
+    for (line, code) in [
+        (format!("run {silo} --until '20 ms' --out closed | true"), 0),
+        (
+            format!("run {silo} --until '20 ms' --out full 2> /dev/full"),
+            0,
+        ),
+        (format!("run {bad} 2> /dev/full"), 3),
+        (format!("fmu {silo} -o {silo} 2> /dev/full"), 2),
+    ] {
+        let line = format!("set -o pipefail; {program} {line}");
+        let mut shell = Command::new("bash");
+        let output = shell
+            .args(["-c", &line])
+            .current_dir(desk.path("."))
+            .output();
+        let output = output.unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(code),
+            "{line}: {}",
+            stderr(&output)
+        );
+    }
+    for out in ["closed", "full"] {
+        assert_eq!(desk.summary(out)["status"], "finished");
+    }
+    assert!(std::fs::read_to_string(&silo).unwrap().contains("[run]"));
+}
+
 #[cfg(unix)]
 #[test]
 fn a_killed_run_goes_on_from_its_last_checkpoint() {

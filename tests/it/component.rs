@@ -164,7 +164,10 @@ fn slopes_are_saturated_as_inputs_are() {
     set(&mut component, "saturate_inputs", 1.0);
     component.do_step(0.0, h).unwrap();
     let notes = component.take_notes();
-    assert!(notes.len() == 1 && notes[0].contains("clamped to 1"), "{notes:?}");
+    assert!(
+        notes.len() == 1 && notes[0].contains("clamped to 1"),
+        "{notes:?}"
+    );
     assert_eq!(value(&component, "gate.main.opening"), 1.0);
     component.set_input_derivatives(&gate, &[f64::MAX]).unwrap();
     component.do_step(h, h).unwrap();

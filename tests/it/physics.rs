@@ -9,6 +9,7 @@ mod collapse;
 mod conservation;
 mod films;
 mod incline;
+mod leaks;
 mod moving_walls;
 mod packing;
 mod paper_a;

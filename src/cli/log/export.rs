@@ -50,14 +50,13 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         );
         if let Some(path) = &args.csv {
             let mut file = BufWriter::new(create(path)?);
-            write_csv(&mut file, &table)
-                .and_then(|()| file.flush())
-                .map_err(|e| cannot_write(path, e))?;
+            let done = write_csv(&mut file, &table).and_then(|()| file.flush());
+            or_remove(path, done)?;
             say(&format!("{}: {shape}", path.display()))?;
         }
         if let Some(path) = &args.parquet {
-            parquet::write(create(path)?, &table)
-                .map_err(|e| cannot_write(path, std::io::Error::other(e)))?;
+            let done = parquet::write(create(path)?, &table);
+            or_remove(path, done.map_err(std::io::Error::other))?;
             say(&format!("{}: {shape}", path.display()))?;
         }
         ending = table.ending;
@@ -89,6 +88,14 @@ fn write_csv(out: &mut impl std::io::Write, table: &Table) -> std::io::Result<()
         writeln!(out)?;
     }
     Ok(())
+}
+
+/// What could not be written whole goes, so that the same command can be given again.
+fn or_remove(path: &Path, done: std::io::Result<()>) -> Result<(), CliError> {
+    done.map_err(|error| {
+        let _ = std::fs::remove_file(path);
+        cannot_write(path, error)
+    })
 }
 
 /// A new file.

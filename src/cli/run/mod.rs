@@ -78,6 +78,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         go_on: go_on_command(args),
         log: !args.no_log,
     };
+    check_times(&plan, args.step.is_some())?;
     let stop = stop::on_interrupt("stopping after this communication step and saving")?;
     let resumed = match &args.resume {
         Some(file) => Some(std::fs::read(file).map_err(|source| CliError::File {
@@ -102,6 +103,26 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let mut session = Session::open(plan, component, folder, &args.case)?;
     let outcome = session.advance(&stop);
     session.close(outcome)
+}
+
+/// The rules that scene files have for these, since the command line may give others.
+fn check_times(plan: &session::Plan, step_given: bool) -> Result<(), CliError> {
+    const MOST: f64 = crate::scene::Run::MOST_STEPS;
+    let (step, until) = (plan.step, plan.until);
+    if step_given && step > until {
+        return Err(CliError::Usage(format!(
+            "found a communication step of {step} s and an end at {until} s, allowed a step up to the end; give a shorter \
+             --step or a later --until"
+        )));
+    }
+    if until / step > MOST {
+        return Err(CliError::Usage(format!(
+            "found {:.3e} communication steps of {step} s until {until} s, allowed {MOST:.0e}; give a longer --step or an \
+             earlier --until",
+            until / step
+        )));
+    }
+    Ok(())
 }
 
 /// A path as a shell takes it for one word.
@@ -141,7 +162,10 @@ mod tests {
     #[test]
     fn paths_are_one_word_for_a_shell() {
         let word = |text: &str| shell_word(Path::new(text));
-        assert_eq!(word("out/silo-2/checkpoint.state"), "out/silo-2/checkpoint.state");
+        assert_eq!(
+            word("out/silo-2/checkpoint.state"),
+            "out/silo-2/checkpoint.state"
+        );
         assert_eq!(word("my out/it's.state"), r"'my out/it'\''s.state'");
         assert_eq!(word("$HOME"), "'$HOME'");
     }

@@ -6,9 +6,6 @@ use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint, S
 use crate::scene::types::{Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule};
 use crate::units::{Quantity, quote};
 
-/// Most communication steps of a run.
-const MOST_STEPS: f64 = 1e8;
-
 impl Lift<'_> {
     pub(super) fn run(&mut self) -> Option<Run> {
         let raw = &self.raw.run.as_ref()?.value;
@@ -23,14 +20,14 @@ impl Lift<'_> {
             return None;
         }
         let steps = until.value.0 / step.value.0;
-        if steps > MOST_STEPS {
+        if steps > Run::MOST_STEPS {
             self.problems.report(
                 &step.place,
                 format!(
                     "{} s, which makes {steps:.3e} steps until {} s",
                     step.value.0, until.value.0
                 ),
-                format!("at most {MOST_STEPS:.0e} communication steps"),
+                format!("at most {:.0e} communication steps", Run::MOST_STEPS),
                 "use a longer step or an earlier end",
             );
             return None;

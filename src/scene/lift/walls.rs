@@ -237,7 +237,7 @@ impl Lift<'_> {
         Some(gate)
     }
 
-    /// At least four spacings, so that no particle sees through the plate.
+    /// At least four spacings, so that no particle sees through the plate, and no more than the domain can hold.
     fn thickness(&mut self, raw: &RawGate) -> Option<f64> {
         let at: &At<_> = raw.thickness.as_ref()?;
         let least = ROWS * self.spacing?;
@@ -248,6 +248,19 @@ impl Lift<'_> {
                 format!("at least {least} m, four times numerics.spacing"),
                 "thicken the gate, leave thickness out, or refine numerics.spacing",
             );
+        }
+        if let Some(domain) = &self.domain {
+            let sides = (0..3).map(|k| domain.upper[k] - domain.lower[k]);
+            let most = sides.fold(0.0, f64::max);
+            if at.value.0 > most.max(least) {
+                self.problems.report(
+                    &at.place,
+                    format!("{} m", at.value.0),
+                    format!("at most {most} m, the longest side of the domain"),
+                    "give the thickness of the plate, or leave it out",
+                );
+                return None;
+            }
         }
         Some(at.value.0)
     }
