@@ -460,7 +460,8 @@ fn plates<const D: usize>(
         let rings = scene.dimension == Dimension::Axisymmetric;
         plate.fill_corners(ends.each_ref().map(meets), |x| {
             let mut others = walls.position.iter().chain(grains);
-            !(rings && x[0] <= 0.0) && !others.any(|y| near(x, y, 0.7))
+            let across_the_axis = rings && x[0] <= 0.0;
+            !across_the_axis && !others.any(|y| near(x, y, 0.7))
         });
         plate
     };

@@ -251,7 +251,7 @@ impl Lift<'_> {
                 &parted.place,
                 format!("parted_density {}", parted.value.0),
                 format!("below {touching:.4}, where grains touch (phi_min over phi_max)"),
-                &format!("lower it, for example to {:.4}", 0.6 * touching),
+                format!("lower it, for example to {:.4}", 0.6 * touching),
             );
             return None;
         }
