@@ -17,7 +17,7 @@ pub fn next_point(time: f64, step: f64, until: f64) -> Option<f64> {
     if time >= until - SLACK * step {
         return None;
     }
-    let multiple = multiple((time / step + SLACK).floor() + 1.0, step);
+    let multiple = multiple(steps_done(time, step) + 1.0, step);
     Some(if multiple > until - SLACK * step {
         until
     } else {
@@ -25,15 +25,26 @@ pub fn next_point(time: f64, step: f64, until: f64) -> Option<f64> {
     })
 }
 
-/// The end of a step of this length from `time` [s]: the next multiple if it starts at one.
+/// The end of a step of length `step` from `time` [s]: the next multiple if it starts at one.
 #[must_use]
 pub fn step_end(time: f64, step: f64) -> f64 {
     let count = (time / step).round();
-    if (time - count * step).abs() <= SLACK * step {
+    if (time / step - count).abs() <= slack(count) {
         multiple(count + 1.0, step)
     } else {
         time + step
     }
+}
+
+/// Whole steps from 0 to `time`.
+fn steps_done(time: f64, step: f64) -> f64 {
+    let count = time / step;
+    (count + slack(count)).floor()
+}
+
+/// By how much a number of steps may be off a whole one that is meant: [`SLACK`], and the rounding of time, step and their ratio.
+fn slack(count: f64) -> f64 {
+    SLACK + 4.0 * f64::EPSILON * count.abs()
 }
 
 /// count x step [s].
@@ -74,7 +85,7 @@ impl Component {
 
 #[cfg(test)]
 mod tests {
-    use super::{next_point as next, step_end};
+    use super::{multiple, next_point as next, step_end};
 
     #[test]
     fn points_are_multiples_and_the_end_is_met_exactly() {
@@ -117,5 +128,20 @@ mod tests {
             assert_eq!(time.to_bits(), (f64::from(5 * count) / 1e3).to_bits());
         }
         assert_eq!(step_end(0.0125, 0.005), 0.0175);
+    }
+
+    /// A run has at most 1e8 steps (`Run::MOST_STEPS`): up to there no step is lost, empty or double.
+    #[test]
+    fn the_last_of_the_most_steps_are_whole() {
+        for step in [1e-3, 5e-3, 7e-4, 0.1, 1e-9, 0.1 / 3.0, 3e-5] {
+            for start in [4e6, 1.1e7, 6.3e7, 9.9e7] {
+                for count in 0..2000 {
+                    let (now, then) = (start + f64::from(count), start + f64::from(count) + 1.0);
+                    let (now, then) = (multiple(now, step), multiple(then, step));
+                    assert_eq!(next(now, step, f64::INFINITY), Some(then), "{step} {now}");
+                    assert_eq!(step_end(now, step), then, "{step} {now}");
+                }
+            }
+        }
     }
 }
