@@ -21,6 +21,7 @@ mod implicit;
 mod kinematics;
 mod lean;
 mod lists;
+mod lone;
 mod mirror;
 mod motion;
 mod numerics;
@@ -153,6 +154,8 @@ pub struct Solver<const D: usize> {
     uneven_pressure: Vec<crate::math::Tensor<D>>,
     /// Stress that each particle's strain against walls without slip lacks (W8) [Pa]; empty in scenes without fluids that yield.
     wall_share: Vec<f64>,
+    /// Id and div v [1/s] at the start of the step of fluid particles without neighbours, by id; else empty.
+    lone: Vec<(u64, f64)>,
     /// The flat wall without slip that each particle of a fluid sees; empty in scenes without fluids and of rings.
     mirrors: Vec<mirror::Mirror<D>>,
     /// Smallest eigenvalue of each particle's moment matrix, 1 far from surfaces; empty in scenes that do not shift [1].
@@ -259,6 +262,7 @@ impl<const D: usize> Solver<D> {
             flows: Vec::new(),
             lean: Vec::new(),
             wall_share: Vec::new(),
+            lone: Vec::new(),
             slides,
             texture: Vec::new(),
             uneven_pressure: Vec::new(),
@@ -346,6 +350,7 @@ impl<const D: usize> Solver<D> {
         let iterations = self.solve_viscous(state, dt)?;
         let impulse = state.impulse.clone();
         self.add_reactions(state, dt);
+        self.note_lone(state);
         self.move_grains(state, dt, acoustic_dt)?;
         on_move(&self.before, &state.grains);
         self.move_walls(state, dt);
@@ -353,6 +358,7 @@ impl<const D: usize> Solver<D> {
         self.drain(state);
         self.keep_inside(state)?;
         self.sweep_kinematics_in_valid_lists(state, false);
+        self.centre_lone(state);
         self.advance_density(state, dt, acoustic_dt)?;
         let came = self.feed(state, inputs.rates, dt);
         if came {

@@ -7,6 +7,7 @@ mod acoustic_steps;
 mod axisymmetric;
 mod collapse;
 mod conservation;
+mod drops;
 mod films;
 mod incline;
 mod leaks;
