@@ -114,7 +114,7 @@ pub(super) fn open<'a>(fingerprint: &[u8; 32], bytes: &'a [u8]) -> Result<&'a [u
     }
     let Some((prefix, rest)) = bytes.split_at_checked(PREFIX) else {
         return refuse(format!(
-            "cut short: found {} bytes, the header alone has {HEADER}",
+            "cut short: found {} bytes, the header alone has {HEADER}; give all bytes that save returned",
             bytes.len()
         ));
     };
@@ -126,7 +126,7 @@ pub(super) fn open<'a>(fingerprint: &[u8; 32], bytes: &'a [u8]) -> Result<&'a [u
     }
     let Some((found_checksum, payload)) = rest.split_at_checked(32) else {
         return refuse(format!(
-            "cut short: found {} bytes, the header alone has {HEADER}",
+            "cut short: found {} bytes, the header alone has {HEADER}; give all bytes that save returned",
             bytes.len()
         ));
     };
@@ -138,18 +138,20 @@ pub(super) fn open<'a>(fingerprint: &[u8; 32], bytes: &'a [u8]) -> Result<&'a [u
             "too long"
         };
         return refuse(format!(
-            "{what}: found {} bytes after the header, which says {length}",
+            "{what}: found {} bytes after the header, which says {length}; give all bytes that save returned and no more",
             payload.len()
         ));
     }
     if checksum(prefix, payload) != found_checksum {
         return refuse(
-            "the checksum does not match: bytes were changed since they were saved".to_owned(),
+            "the checksum does not match: bytes were changed since they were saved; give an earlier state, or save anew"
+                .to_owned(),
         );
     }
     if &prefix[12..44] != fingerprint {
         return refuse(format!(
-            "saved from another scene: found fingerprint {}, allowed {} (this scene's)",
+            "saved from another scene: found fingerprint {}, allowed {} (this scene's); give a state that was saved from this scene, or build \
+             the component from the scene that it was saved from",
             &hex(&prefix[12..44])[..12],
             &hex(fingerprint)[..12]
         ));

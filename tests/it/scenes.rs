@@ -321,7 +321,7 @@ fn files_that_are_no_text_are_refused_with_a_remedy() {
         assert!(message.contains(part), "{name}: {message}");
     };
     check("latin.toml", b"name = \"\xe4\"\n", "not UTF-8");
-    check("empty.toml", b"", "add domain");
+    check("empty.toml", b"", "add [domain] with lower, upper");
     check("zeros.toml", &[0; 64], "TOML");
     check("image.toml", b"\x89PNG\r\n\x1a\n", "not UTF-8");
     check("json.toml", b"{ \"name\": 1 }", "not JSON");

@@ -3,17 +3,13 @@
 use crate::cli::CliError;
 use crate::cli::clock::Stopwatch;
 use crate::cli::run::bound_name;
-use crate::component::Component;
-use crate::component::next_point;
+use crate::component::{Component, Wish, next_point};
 use crate::scene::Scene;
 use crate::solver::Scheme;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Wall time a measurement may take [s]; it ends after the step in hand.
+/// Wall time a measurement may take [s]; it ends after the internal step in hand.
 const BUDGET: f64 = 3.0;
-
-/// Acoustic steps in the first piece of it, before it is known what a step costs.
-const FIRST_STEPS: f64 = 5.0;
 
 /// What the first steps took.
 pub(super) struct Measured {
@@ -47,23 +43,25 @@ pub(super) fn measure(component: &mut Component) -> Result<Measured, CliError> {
         wall: 0.0,
         cpu: 0.0,
     };
-    let longest = component.scene().numerics.longest_step();
     let watch = Stopwatch::start();
-    // A communication step of a large scene may take an hour: a few internal steps say how far the budget reaches.
-    let mut room = FIRST_STEPS * longest;
     while let Some(next) = next_point(component.time(), plan.step, plan.until) {
         let time = component.time();
-        let next = next.min(time + room);
         let (references, values) = component.scheduled(time);
         component.set(&references, &values)?;
-        let report = component.do_step(time, next - time)?;
+        // A communication step of a large scene may take an hour.
+        let report = component.do_step_watched(time, next - time, &mut |moment| {
+            bar.set_position((watch.wall() * 1e3) as u64);
+            bar.set_message(format!("t = {:.4} s", moment.time()));
+            if watch.wall() > BUDGET {
+                Wish::EndAt(moment.time())
+            } else {
+                Wish::GoOn
+            }
+        })?;
         if report.smallest_step < measured.smallest_step {
             measured.smallest_step = report.smallest_step;
             measured.bound_by = bound_name(report.bound_by);
         }
-        room = 0.5 * BUDGET * component.time() / watch.wall().max(f64::MIN_POSITIVE);
-        bar.set_position((watch.wall() * 1e3) as u64);
-        bar.set_message(format!("t = {:.4} s", component.time()));
         if watch.wall() > BUDGET {
             break;
         }

@@ -13,8 +13,7 @@ use crate::cli::CliError;
 use crate::record::{Body, Ending, Entry, LogReader};
 use crate::wire::foxglove::{FrameTransform, PointCloud, Pose, SceneEntity, SceneUpdate};
 
-/// Writes what is in `window` to the new folder `folder`; gives a line for people and how the log
-/// ends.
+/// Writes what is in `window` to the new folder `folder`, all or nothing; gives a line for people and how the log ends.
 ///
 /// # Errors
 /// [`CliError::Read`], [`CliError::File`].
@@ -29,6 +28,16 @@ pub(super) fn write(
         source,
         remedy: "choose a name that is free",
     })?;
+    let written = fill(log, folder, window);
+    if written.is_err() {
+        // It is new, and what is in it ours.
+        let _ = std::fs::remove_dir_all(folder);
+    }
+    written
+}
+
+/// Writes them to this empty folder.
+fn fill(log: &Path, folder: &Path, window: &Window) -> Result<(String, Ending), CliError> {
     let mut scene = SceneUpdate::default();
     let mut frames: HashMap<String, Isometry3<f64>> = HashMap::new();
     let (mut particles, mut walls) = (Vec::new(), Vec::new());

@@ -40,7 +40,9 @@ pub(super) fn svg(title: &str, series: &Series) -> Result<String, Failed> {
         let root = SVGBackend::with_string(&mut picture, (WIDTH, height)).into_drawing_area();
         root.fill(&WHITE)?;
         let (head, body) = root.split_vertically(TITLE);
-        head.draw(&Text::new(title.to_owned(), (16, 14), ("sans-serif", 20)))?;
+        // XML has no control characters.
+        let title = title.replace(char::is_control, " ");
+        head.draw(&Text::new(title, (16, 14), ("sans-serif", 20)))?;
         if panels.is_empty() {
             let text = "this case has no gauges, gates, inflows or outflows to draw";
             body.draw(&Text::new(text, (16, 40), ("sans-serif", 15)))?;
@@ -115,7 +117,7 @@ fn draw_panel(area: &Area, panel: &Panel, series: &Series) -> Result<(), Failed>
     for (index, column) in panel.curves.iter().enumerate() {
         let style = COLOURS[index % MOST_CURVES].stroke_width(if column.is_input { 1 } else { 2 });
         for piece in pieces(column, panel.factor, series) {
-            chart.draw_series(LineSeries::new(piece, style))?;
+            chart.draw_series(LineSeries::new(thinned(piece, end - start), style))?;
         }
         let y = 22 + 22 * i32::try_from(index)?;
         let line = vec![(6, y + 6), (30, y + 6)];
@@ -170,6 +172,36 @@ fn pieces(column: &Column, factor: f64, series: &Series) -> Vec<Vec<(f64, f64)>>
     pieces
 }
 
+/// A long piece of a run of this length [s], with first, last, least and largest sample of every pixel: it looks the same.
+fn thinned(piece: Vec<(f64, f64)>, length: f64) -> Vec<(f64, f64)> {
+    let pixels = f64::from(WIDTH - LEGEND);
+    if piece.len() < 4 * (WIDTH - LEGEND) as usize {
+        return piece;
+    }
+    let pixel = |point: &(f64, f64)| (point.0 / length * pixels).floor();
+    let mut kept = Vec::new();
+    for same in piece.chunk_by(|a, b| pixel(a) == pixel(b)) {
+        let extreme = |order: fn(&f64, &f64) -> bool| {
+            let better = |best: usize, n: usize| {
+                if order(&same[n].1, &same[best].1) {
+                    n
+                } else {
+                    best
+                }
+            };
+            (1..same.len()).fold(0, better)
+        };
+        let mut shown = [0, extreme(f64::lt), extreme(f64::gt), same.len() - 1];
+        shown.sort_unstable();
+        for (at, n) in shown.iter().enumerate() {
+            if at == 0 || shown[at - 1] != *n {
+                kept.push(same[*n]);
+            }
+        }
+    }
+    kept
+}
+
 /// A number for an axis: four digits, exponents only where they help.
 fn short(value: f64) -> String {
     let size = value.abs();
@@ -182,5 +214,31 @@ fn short(value: f64) -> String {
         "0".to_owned()
     } else {
         text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A noisy curve of a million samples with one spike: the spike, both ends and order stay, the rest goes.
+    #[test]
+    fn a_long_curve_keeps_its_extremes() {
+        let many = 1_000_000;
+        let wave = |n: usize| {
+            if n == 345_678 {
+                9.0
+            } else {
+                (n as f64 * 0.37).sin()
+            }
+        };
+        let curve: Vec<_> = (0..many).map(|n| (n as f64 * 1e-3, wave(n))).collect();
+        let thin = thinned(curve.clone(), 1e3);
+        assert!(thin.len() <= 4 * (WIDTH - LEGEND + 1) as usize);
+        assert!(thin.is_sorted_by(|a, b| a.0 < b.0));
+        assert!(thin.contains(&curve[345_678]));
+        assert_eq!((thin.first(), thin.last()), (curve.first(), curve.last()));
+        let short = curve[..100].to_vec();
+        assert_eq!(thinned(short.clone(), 1e3), short);
     }
 }

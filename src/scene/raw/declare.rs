@@ -51,6 +51,12 @@ macro_rules! table {
                     }, )*
                 })
             }
+
+            fn remedy(name: &str) -> String {
+                let needed = Self::KEYS.iter().filter(|key| key.need == Need::Required);
+                let needed: Vec<_> = needed.map(|key| key.name).collect();
+                format!("add [{name}] with {}", needed.join(", "))
+            }
         }
 
         impl schemars::JsonSchema for $name {

@@ -176,6 +176,10 @@ impl<T: Field> Field for Named<T> {
         }
         Some(Self(entries))
     }
+
+    fn remedy(name: &str) -> String {
+        format!("add [{name}.NAME]")
+    }
 }
 
 schemas! {

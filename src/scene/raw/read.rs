@@ -208,6 +208,14 @@ pub(in crate::scene) trait Field: Sized + JsonSchema {
     fn example() -> String {
         String::new()
     }
+
+    /// What to do where the key of this name is missing.
+    fn remedy(name: &str) -> String {
+        match Self::example() {
+            none if none.is_empty() => format!("add {name}"),
+            example => format!("add {name} = {example}"),
+        }
+    }
 }
 
 /// One key of a table: what `table!` knows of it.
@@ -263,18 +271,8 @@ impl KeySpec {
         if self.need == Need::Required {
             let about = self.doc.first().map_or("", |d| d.trim());
             let about = about.trim_end_matches(['.', ':']);
-            let example = T::example();
-            let remedy = if example.is_empty() {
-                format!("add {}", self.name)
-            } else {
-                format!("add {} = {example}", self.name)
-            };
-            problems.report(
-                &place,
-                "nothing",
-                format!("the key {}: {about}", self.name),
-                remedy,
-            );
+            let allowed = format!("the key {}: {about}", self.name);
+            problems.report(&place, "nothing", allowed, T::remedy(self.name));
             return None;
         }
         let value = DeValue::parse(self.default?).ok()?;
