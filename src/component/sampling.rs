@@ -17,6 +17,8 @@ pub(crate) struct Sampler<const D: usize> {
     gauges: Vec<Kind<D>>,
     /// What each gauge sees.
     sights: Vec<Sight>,
+    /// Ranks of the scene's materials, each once, from the lowest.
+    ranks: Vec<u8>,
 }
 
 /// What a gauge sees of the particles.
@@ -24,6 +26,8 @@ pub(crate) struct Sampler<const D: usize> {
 pub(crate) struct Sight {
     /// The one material, if not all.
     pub(crate) material: Option<u8>,
+    /// The one rank where materials meet, if not all ([`crate::material::Material::rank`]).
+    pub(crate) rank: Option<u8>,
     /// What of it.
     pub(crate) quantity: Shows,
 }
@@ -37,11 +41,14 @@ pub(crate) enum Shows {
     ShearStress,
 }
 
-/// Stress on both sides of an interface.
-const STRESS: Sight = Sight {
-    material: None,
-    quantity: Shows::ShearStress,
-};
+/// Stress of materials of one rank.
+fn stress_of(rank: u8) -> Sight {
+    Sight {
+        material: None,
+        rank: Some(rank),
+        quantity: Shows::ShearStress,
+    }
+}
 
 #[derive(Clone, Debug)]
 enum Kind<const D: usize> {
@@ -52,7 +59,7 @@ enum Kind<const D: usize> {
         before: f64,
     },
     Force(ForceTarget),
-    /// Where one material ends; the stress there is that of all.
+    /// Where one material ends; the stress there is that of the lowest rank.
     Interface(DepthLine<D>),
 }
 
@@ -66,14 +73,19 @@ impl<const D: usize> Sampler<D> {
         let gauges = scene.gauges.iter().map(|g| kind(g, &period)).collect();
         let sight = |g: &Gauge| Sight {
             material: g.material.map(|m| m as u8),
+            rank: None,
             quantity: Shows::Pressure(match g.kind {
                 GaugeKind::Pressure { quantity, .. } => quantity,
                 _ => PressureQuantity::Total,
             }),
         };
+        let mut ranks: Vec<u8> = scene.materials.iter().map(|m| m.material.rank()).collect();
+        ranks.sort_unstable();
+        ranks.dedup();
         Self {
             gauges,
             sights: scene.gauges.iter().map(sight).collect(),
+            ranks,
         }
     }
 
@@ -97,7 +109,12 @@ impl<const D: usize> Sampler<D> {
     pub(crate) fn count(&mut self, before: &[[f64; D]], grains: &Grains<D>) {
         for (gauge, sight) in self.gauges.iter_mut().zip(&self.sights) {
             if let Kind::Discharge { section, .. } = gauge {
-                for (i, from) in before.iter().enumerate() {
+                // What an outflow took is counted there.
+                for (i, from) in before
+                    .iter()
+                    .enumerate()
+                    .filter(|(i, _)| !grains.drained[*i])
+                {
                     if sight.material.is_none_or(|m| m == grains.phase[i]) {
                         section.add(from, &grains.position[i], grains.mass[i]);
                     }
@@ -110,7 +127,7 @@ impl<const D: usize> Sampler<D> {
     pub(crate) fn seen(&self) -> Vec<Sight> {
         let mut seen = self.sights.clone();
         if self.gauges.iter().any(|g| matches!(g, Kind::Interface(_))) {
-            seen.push(STRESS);
+            seen.extend(self.ranks.iter().map(|&rank| stress_of(rank)));
         }
         seen.sort_unstable();
         seen.dedup();
@@ -157,7 +174,10 @@ impl<const D: usize> Sampler<D> {
             }
             Kind::Discharge { section, before } => discharge(section, *before, step),
             Kind::Force(target) => force::<D>(*target, devices, step),
-            Kind::Interface(line) => gauge::interface_stress(line, &view(*sight), &view(STRESS)),
+            Kind::Interface(line) => {
+                let stress = self.ranks.iter().map(|&rank| view(stress_of(rank)));
+                gauge::interface_stress(line, &view(*sight), stress)
+            }
         };
         self.gauges.iter().zip(&self.sights).map(read).collect()
     }

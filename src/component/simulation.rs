@@ -12,7 +12,7 @@ use crate::gauge::{Reading, View};
 use crate::math::{Geometry, Vector, dot};
 use crate::scene::{self, Dimension, PressureQuantity, Scene};
 use crate::solver::{Solver, StaysAwake, StepInputs, three};
-use crate::state::{CellGrid, RestState, State};
+use crate::state::{CellGrid, Grains, RestState, State};
 
 /// What is saved: the state, and what sections have counted.
 #[derive(Serialize, Deserialize)]
@@ -95,13 +95,17 @@ impl<const D: usize> Simulation<D> {
         let (pressure, has): (Vec<f64>, Vec<bool>) = match sight.quantity {
             Shows::Pressure(quantity) => self.pressures(quantity),
             Shows::ShearStress => {
-                let all = 0..grains.len();
-                all.map(|i| (self.solver.shear_stress(&self.state, i), true))
-                    .unzip()
+                let stress = self.solver.shear_stress(&self.state);
+                let all = vec![true; stress.len()];
+                (stress, all)
             }
         };
         let is_seen = |i: &usize| {
-            !grains.drained[*i] && has[*i] && material.is_none_or(|m| m == grains.phase[*i])
+            let rank = || self.solver.material_of(&self.state, *i).rank();
+            !grains.drained[*i]
+                && has[*i]
+                && material.is_none_or(|m| m == grains.phase[*i])
+                && sight.rank.is_none_or(|r| r == rank())
         };
         let seen: Vec<usize> = (0..grains.len()).filter(is_seen).collect();
         let pick = |values: &[f64]| -> Vec<f64> { seen.iter().map(|&i| values[i]).collect() };
@@ -234,7 +238,15 @@ impl<const D: usize> Simulation<D> {
     /// Takes saved bytes apart; refuses what does not fit this scene.
     fn decoded(&self, bytes: &[u8]) -> Result<Saved<D>, String> {
         let saved: Saved<D> = snapshot::decode(bytes)?;
-        let fits = saved.state.grains.is_consistent()
+        let state = &saved.state;
+        let share = |x: f64| (0.0..=1.0).contains(&x);
+        let options = |g: &Grains<D>| [g.implicit, g.exact_yield, g.wall_friction, g.saturated];
+        let fits = options(&state.grains) == options(&self.state.grains)
+            && state.grains.is_consistent(self.solver.materials())
+            && state
+                .gates
+                .iter()
+                .all(|g| share(g.opening) && share(g.listed_opening) && g.rate.is_finite())
             && saved.state.gates.len() == self.state.gates.len()
             && saved.state.inflows.len() == self.state.inflows.len()
             && saved.state.drained.len() == self.state.drained.len()

@@ -39,7 +39,9 @@ impl<const D: usize> Solver<D> {
         self.workers
             .blocks_read(&self.lists.blocks, explicit, |block, first, out| {
                 for (row, explicit) in out.iter_mut().enumerate() {
-                    let mut near = block.j[block.groups(row)].iter().flatten();
+                    // Between fluid and grains the fluid's stress acts, and that is quick.
+                    let [like, other, ..] = block.kinds(row);
+                    let mut near = block.j[like.start..other.end].iter().flatten();
                     *explicit = quick[first + row] && near.all(|&j| quick[j as usize]);
                 }
             });

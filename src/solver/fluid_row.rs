@@ -5,6 +5,7 @@
 use crate::math::{Four, LANES, Lanes, Quad, Tensor, Vector, dot, shear_rate, trace};
 
 use super::Solver;
+use super::meeting::KINDS;
 use super::pair::Block;
 use super::record::{Record, motions};
 
@@ -15,8 +16,10 @@ pub(super) const LEAST_DISTANCE2: f64 = 1e-12;
 pub(super) struct Row<const D: usize> {
     /// sum (v_j - v_i) (x) g, walls twice [1/s].
     pub(super) gradient: Tensor<D>,
-    /// What images across flat walls add to it for the shear rate alone [1/s].
+    /// What images across flat walls, and grains and fluids to each other, add to it for the shear rate alone [1/s].
     pub(super) images: Tensor<D>,
+    /// What fluids among a grain's neighbours have of `moment` [1].
+    pub(super) softer: Tensor<D>,
     /// -sum x_ij (x) g: the identity far from surfaces [1].
     pub(super) moment: Tensor<D>,
     /// gamma_pair^2 = (D + 2) sum V_j |F| (v_ij . x_ij)^2/r^2 [1/s^2].
@@ -37,6 +40,7 @@ impl<const D: usize> Row<D> {
     pub(super) const NONE: Self = Self {
         gradient: [[0.0; D]; D],
         images: [[0.0; D]; D],
+        softer: [[0.0; D]; D],
         moment: [[0.0; D]; D],
         pair_shear2: 0.0,
         fourfold: [0.0; 2],
@@ -113,15 +117,16 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Coefficients, appended to the block, and sums of particle i against the neighbours `near`. RINGS: particles are
-    /// rings; FLUIDS: some material is a fluid.
+    /// rings; FLUIDS: some material is a fluid; MEET: it meets others, and `kinds` says how many groups are of the first kind, of the
+    /// first two, and so on.
     #[inline(always)]
-    pub(super) fn fluid_row<L: Lanes, const RINGS: bool, const FLUIDS: bool>(
+    pub(super) fn fluid_row<L: Lanes, const RINGS: bool, const FLUIDS: bool, const MEET: bool>(
         &self,
         lanes: L,
         records: &[Record],
         (i, xi, vi): (usize, &Vector<D>, &Vector<D>),
         block: &mut Block<D>,
-        near: &[u32],
+        (near, kinds): (&[u32], [usize; KINDS - 1]),
     ) -> Row<D> {
         let dissipation = D as f64 + 2.0;
         let zero = Four::splat(lanes, 0.0);
@@ -141,9 +146,18 @@ impl<const D: usize> Solver<D> {
         let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
         let (mut pair_shear2, mut speed2, mut fourfold) = (zero, zero, [zero; 2]);
         let (mut side, mut nearness) = ([zero; D], zero);
+        // Gradient and moment without harder and softer neighbours, and without softer ones.
+        let mut until = [(gradient, moment); 2];
         let groups = near.as_chunks::<LANES>().0;
         let (g, c) = block.next_row(groups);
-        for ((j, g), c) in groups.iter().zip(g).zip(c) {
+        for (n, ((j, g), c)) in groups.iter().zip(g).zip(c).enumerate() {
+            if MEET {
+                for (until, &end) in until.iter_mut().zip(&kinds[1..]) {
+                    if n == end {
+                        *until = (gradient, moment);
+                    }
+                }
+            }
             let other = motions::<L, D>(lanes, records, j);
             let (mut x, mut v) = ([zero; D], [zero; D]);
             let (mut r2, mut v2, mut vx) = (zero, zero, zero);
@@ -194,10 +208,25 @@ impl<const D: usize> Solver<D> {
             nearness: nearness.sum(),
             ..Row::NONE
         };
+        if MEET {
+            for (until, &end) in until.iter_mut().zip(&kinds[1..]) {
+                if end >= groups.len() {
+                    *until = (gradient, moment);
+                }
+            }
+        }
         for a in 0..D {
             for b in 0..D {
                 sums.gradient[a][b] = gradient[a][b].sum();
-                sums.moment[a][b] = moment[a.min(b)][a.max(b)].sum();
+                let m = moment[a.min(b)][a.max(b)];
+                sums.moment[a][b] = m.sum();
+                if MEET {
+                    let [(own, _), (harder, most)] = &until;
+                    // Harder ones twice, softer ones not at all.
+                    let once_more = harder[a][b] - own[a][b];
+                    sums.images[a][b] = (once_more - (gradient[a][b] - harder[a][b])).sum();
+                    sums.softer[a][b] = (m - most[a.min(b)][a.max(b)]).sum();
+                }
             }
         }
         sums

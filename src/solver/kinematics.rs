@@ -3,11 +3,12 @@
 //!
 //! Symbols: F = W'(r)/r <= 0, grad W_ij = F x_ij, x_ij = x_i - x_j, v_ij = v_i - v_j, V = m/rho.
 
-use crate::math::{Lanes, Vector, determinant, in_lanes, inverse, multiply, trace};
+use crate::math::{LANES, Lanes, Tensor, Vector, determinant, in_lanes, inverse, multiply, trace};
 use crate::state::State;
 
 use super::Solver;
 use super::fluid_row::Row;
+use super::meeting::KINDS;
 use super::mirror::add_image_gradient;
 use super::pair::Block;
 use super::record::Record;
@@ -56,20 +57,22 @@ impl<const D: usize> Solver<D> {
         self.workers
             .blocks(&mut blocks, &mut kinematics, |block, first, out| {
                 let rings = self.geometry.is_axisymmetric();
-                in_lanes!(self.arch, |lanes| match (rings, self.has_fluids) {
-                    (true, true) => self.block_kinematics::<_, true, true>(
-                        lanes, state, &records, block, first, out
-                    ),
-                    (true, false) => self.block_kinematics::<_, true, false>(
-                        lanes, state, &records, block, first, out
-                    ),
-                    (false, true) => self.block_kinematics::<_, false, true>(
-                        lanes, state, &records, block, first, out
-                    ),
-                    (false, false) => self.block_kinematics::<_, false, false>(
-                        lanes, state, &records, block, first, out
-                    ),
-                });
+                macro_rules! sweep {
+                    ($rings:literal, $fluids:literal, $meet:literal) => {
+                        in_lanes!(self.arch, |lanes| self
+                            .block_kinematics::<_, $rings, $fluids, $meet>(
+                                lanes, state, &records, block, first, out
+                            ))
+                    };
+                }
+                match (rings, self.has_fluids, self.has_meetings) {
+                    (true, _, true) => sweep!(true, true, true),
+                    (true, true, false) => sweep!(true, true, false),
+                    (true, false, false) => sweep!(true, false, false),
+                    (false, _, true) => sweep!(false, true, true),
+                    (false, true, false) => sweep!(false, true, false),
+                    (false, false, false) => sweep!(false, false, false),
+                }
             });
         self.records = records;
         self.lists.blocks = blocks;
@@ -79,7 +82,7 @@ impl<const D: usize> Solver<D> {
     }
 
     #[inline(always)]
-    fn block_kinematics<L: Lanes, const RINGS: bool, const FLUIDS: bool>(
+    fn block_kinematics<L: Lanes, const RINGS: bool, const FLUIDS: bool, const MEET: bool>(
         &self,
         lanes: L,
         state: &State<D>,
@@ -94,13 +97,18 @@ impl<const D: usize> Solver<D> {
         for (row, o) in out.iter_mut().enumerate() {
             let i = first + row;
             let (x, v) = (&state.grains.position[i], &state.grains.velocity[i]);
-            let count = self.find_near(lanes, records, i, x, block.row(row), &mut near);
-            let mut sums = self.fluid_row::<L, RINGS, FLUIDS>(
+            let mut count = self.find_near(lanes, records, i, x, block.row(row), &mut near);
+            let mut kinds = [count / LANES; KINDS - 1];
+            if MEET {
+                (count, kinds) = self.sort_by_kind(state, i, &mut near, count);
+                block.tell_kinds(kinds);
+            }
+            let mut sums = self.fluid_row::<L, RINGS, FLUIDS, MEET>(
                 lanes,
                 records,
                 (i, x, v),
                 block,
-                &near[..count],
+                (&near[..count], kinds),
             );
             if !block.wall_row(row).is_empty()
                 && let Some(mut w) = self.wall_row(
@@ -164,9 +172,10 @@ impl<const D: usize> Solver<D> {
         }
         let plain = self.geometry.strain_deviator(&gradient, hoop);
         kinematics.shear = self.geometry.shear_rate(&plain);
-        if kinematics.shear > 0.0 && determinant(&sums.moment) > 0.15 {
+        let moment = minus(&sums.moment, &sums.softer);
+        if kinematics.shear > 0.0 && determinant(&moment) > 0.15 {
             // M does without what `axis` stands for.
-            let corrected = multiply(&plain_gradient, &inverse(&sums.moment));
+            let corrected = multiply(&plain_gradient, &inverse(&moment));
             let e = self.geometry.strain_deviator(&corrected, hoop);
             let shear = self.geometry.shear_rate(&e);
             kinematics.correction = (shear / kinematics.shear).clamp(0.8, 3.0);
@@ -182,4 +191,8 @@ impl<const D: usize> Solver<D> {
         }
         kinematics
     }
+}
+
+fn minus<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|r| std::array::from_fn(|c| a[r][c] - b[r][c]))
 }

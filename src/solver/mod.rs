@@ -22,6 +22,7 @@ mod kinematics;
 mod lean;
 mod lists;
 mod lone;
+mod meeting;
 mod mirror;
 mod motion;
 mod numerics;
@@ -118,6 +119,8 @@ pub struct Solver<const D: usize> {
     stays_awake: Option<StaysAwake>,
     has_bulk_friction: bool,
     has_fluids: bool,
+    /// Whether fluids meet other materials, in the default scheme (F6).
+    has_meetings: bool,
     /// Whether a material is saturated.
     has_pores: bool,
     /// Whether what presses grain on grain, or rubs on a wall, is not the pressure of every particle.
@@ -208,6 +211,7 @@ impl<const D: usize> Solver<D> {
         let has_pores = materials.iter().any(Material::is_saturated);
         let rubs = walls.groups.iter().any(|g| g.friction > 0.0);
         let has_fluids = materials.iter().any(Material::is_fluid);
+        let has_meetings = numerics.scheme == Scheme::Implicit && has_fluids && materials.len() > 1;
         let has_effective_pressure = has_pores || (rubs && has_fluids);
         let lattice_sum = if has_pores || has_fluids {
             pore::lattice_sum(&kernel, spacing)
@@ -245,6 +249,7 @@ impl<const D: usize> Solver<D> {
             stays_awake,
             has_bulk_friction,
             has_fluids,
+            has_meetings,
             has_pores,
             has_effective_pressure,
             records: Vec::new(),

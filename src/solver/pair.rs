@@ -2,6 +2,7 @@
 
 use crate::math::{LANES, Quad, Tensor, Vector};
 
+use super::meeting::KINDS;
 use super::mirror::Image;
 use super::wall_friction::Contact;
 
@@ -68,6 +69,8 @@ pub(super) struct Block<const D: usize> {
     pub(super) c: Vec<Quad>,
     /// Where each row's groups end.
     group_ends: Vec<u32>,
+    /// Where those of each kind end, but for the last (see `meeting`); empty where all are alike.
+    kind_ends: Vec<[u32; KINDS - 1]>,
     /// Rows that see walls.
     pub(super) wall_rows: Vec<WallRow<D>>,
     /// Images of neighbours across flat walls without slip, row after row; empty in scenes without fluids.
@@ -121,8 +124,10 @@ impl<const D: usize> Block<D> {
             rest.fill(i);
             rest.len()
         });
-        if self.near.len() < count {
-            self.near.resize(count, 0);
+        // Neighbours of each kind fill their last group.
+        let most = count + (KINDS - 1) * LANES;
+        if self.near.len() < most {
+            self.near.resize(most, 0);
         }
         self.ends.push((self.filled.0 as u32, self.filled.1 as u32));
     }
@@ -146,13 +151,14 @@ impl<const D: usize> Block<D> {
     /// Forgets groups, wall rows and contacts before a sweep makes them anew.
     pub(super) fn forget_pairs(&mut self) {
         // Room for all that is listed, made once: no row has to ask for it, and lanes' registers outlive what they write.
-        let most = self.filled.0 / LANES;
+        let most = self.filled.0 / LANES + (KINDS - 1) * self.rows();
         if self.j.len() < most {
             self.j.resize(most, [0; LANES]);
             self.g.resize(most, [Quad::default(); D]);
             self.c.resize(most, Quad::default());
         }
         self.group_ends.clear();
+        self.kind_ends.clear();
         self.wall_rows.clear();
         self.images.clear();
         self.textures.clear();
@@ -178,6 +184,25 @@ impl<const D: usize> Block<D> {
             self.group_ends[row - 1]
         };
         start as usize..self.group_ends[row] as usize
+    }
+
+    /// Tells how many groups the row that comes next has of the first kind, of the first two, and so on but for the last.
+    #[inline(always)]
+    pub(super) fn tell_kinds(&mut self, counts: [usize; KINDS - 1]) {
+        let start = self.group_ends.last().map_or(0, |end| *end);
+        self.kind_ends
+            .push(counts.map(|count| start + count as u32));
+    }
+
+    /// Ranges of a row's groups, kind after kind.
+    #[inline(always)]
+    pub(super) fn kinds(&self, row: usize) -> [std::ops::Range<usize>; KINDS] {
+        let all = self.groups(row);
+        let [like, other, harder] = match self.kind_ends.get(row) {
+            Some(ends) => ends.map(|end| end as usize),
+            None => [all.end; KINDS - 1],
+        };
+        [all.start..like, like..other, other..harder, harder..all.end]
     }
 
     /// Images that a row sees.

@@ -8,6 +8,7 @@ use crate::math::{Four, Lanes, Quad, Tensor, Vector, apply, in_lanes};
 use crate::state::State;
 
 use super::Solver;
+use super::meeting::share;
 use super::pair::Block;
 
 /// What the sweep leaves per particle.
@@ -168,8 +169,8 @@ impl<const D: usize> Solver<D> {
         let head = 1.0 / (rho * self.gravity_norm * numerics.spacing).max(f64::MIN_POSITIVE);
         let (zero, half, one) = (splat(0.0), splat(0.5), splat(1.0));
         let (two, least) = (splat(2.0), splat(f64::MIN_POSITIVE));
-        let share = numerics.pair_viscosity_share;
-        let (by_pairs, by_stress) = (splat(2.0 * share), splat(1.0 - share));
+        let by_pairs = numerics.pair_viscosity_share;
+        let (by_pairs, by_stress) = (splat(2.0 * by_pairs), splat(1.0 - by_pairs));
         let along = splat(1.0 - 2.0 / D as f64);
         let normal =
             (!PLAIN && !self.normal_pressure.is_empty()).then_some(&self.normal_pressure[..]);
@@ -178,9 +179,10 @@ impl<const D: usize> Solver<D> {
         let mut force = [zero; D];
         let mut resistance = [[zero; D]; D];
         let mut diffusion = zero;
+        let [like, other, harder, _] = block.kinds(row);
         let range = block.groups(row);
         let (j, g) = (&block.j[range.clone()], &block.g[range.clone()]);
-        for ((j, g), c) in j.iter().zip(g).zip(&mut block.c[range]) {
+        for (n, ((j, g), c)) in (range.start..).zip(j.iter().zip(g).zip(&mut block.c[range])) {
             let [pj, shear_j, rho_j, eta_j] = Four::transpose(
                 lanes,
                 [
@@ -264,7 +266,16 @@ impl<const D: usize> Solver<D> {
             // Harmonic mean of the viscosities; 0 if both are.
             let both = (splat(eta) + eta_j).max(least);
             let weighted = geometric * (two * splat(eta) * eta_j).over(both);
-            let stress = by_stress * eta_j;
+            let mut stress = by_stress * eta_j;
+            if !PLAIN && n >= like.end {
+                // m_ji is in the stress and in its force.
+                let m = match n {
+                    n if n < other.end => share(lanes, eta_j, splat(eta)),
+                    n if n < harder.end => zero,
+                    _ => two,
+                };
+                stress = m * m * stress;
+            }
             let mut twice = by_pairs * weighted;
             if D > 2 {
                 twice += along * stress;

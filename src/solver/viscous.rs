@@ -5,13 +5,16 @@
 //! and the operator is symmetric and positive. A share of eta goes through the pair form, which sees the zero-energy
 //! modes that G does not.
 
+use std::ops::Range;
+
 use crate::math::{Four, Lanes, Tensor, Vector, apply, in_lanes, inverse, scale};
 use crate::state::State;
 
 use super::Solver;
+use super::meeting::{HARDER, LIKE, OTHER, SOFTER, add_differences, share};
 use super::mirror::{add_image_gradient, image_drag, image_force};
 use super::pair::Block;
-use super::record::{Record, stresses};
+use super::record::{Record, Stresses, stresses};
 
 impl<const D: usize> Solver<D> {
     /// Records of v_i and tau_i = 2 (1 - share) eta_i e_i(v); tau_i = 0 for the rows that `skipped` names, if it is not empty.
@@ -46,7 +49,7 @@ impl<const D: usize> Solver<D> {
             });
     }
 
-    /// gradient += sum_j (v_j - v_i) (x) g_ij.
+    /// gradient += sum_j m_ij (v_j - v_i) (x) g_ij.
     #[inline(always)]
     fn add_gradient<L: Lanes>(
         &self,
@@ -63,20 +66,14 @@ impl<const D: usize> Solver<D> {
         for k in 0..D {
             own[k] = Four::splat(lanes, v[i][k]);
         }
-        let range = block.groups(row);
-        for (j, g) in block.j[range.clone()].iter().zip(&block.g[range]) {
-            let near = [
-                &v[j[0] as usize],
-                &v[j[1] as usize],
-                &v[j[2] as usize],
-                &v[j[3] as usize],
-            ];
-            for a in 0..D {
-                let d = Four::gather(lanes, |m| near[m][a]) - own[a];
-                for b in 0..D {
-                    sums[a][b] += d * Four::load(lanes, &g[b]);
-                }
-            }
+        let of = (lanes, block, i, &self.viscosity[..]);
+        let [like, other, harder, _] = block.kinds(row);
+        add_differences::<_, D, LIKE>(of, like, &own, v, &mut sums);
+        if !other.is_empty() {
+            add_differences::<_, D, OTHER>(of, other, &own, v, &mut sums);
+        }
+        if !harder.is_empty() {
+            add_differences::<_, D, HARDER>(of, harder, &own, v, &mut sums);
         }
         for a in 0..D {
             for b in 0..D {
@@ -161,7 +158,7 @@ impl<const D: usize> Solver<D> {
         2.0 * a * b / (a + b).max(f64::MIN_POSITIVE)
     }
 
-    /// sum_j (tau_i + tau_j) g_ij and the pair form's share.
+    /// sum_j (m_ij tau_i + m_ji tau_j) g_ij and the pair form's share.
     #[inline(always)]
     fn row_force<L: Lanes, const RINGS: bool>(
         &self,
@@ -172,33 +169,67 @@ impl<const D: usize> Solver<D> {
         records: &[Record],
     ) -> Vector<D> {
         let share = Four::splat(lanes, self.numerics.pair_viscosity_share);
-        let zero = Four::splat(lanes, 0.0);
         let own = stresses::<L, D, RINGS>(lanes, records, &[i as u32; 4]);
-        let mut f = [zero; D];
-        let range = block.groups(row);
-        let (j, g) = (&block.j[range.clone()], &block.g[range.clone()]);
-        for ((j, g), c) in j.iter().zip(g).zip(&block.c[range]) {
-            let other = stresses::<L, D, RINGS>(lanes, records, j);
-            let mut g_ij = [zero; D];
-            let mut along = zero;
-            for k in 0..D {
-                g_ij[k] = Four::load(lanes, &g[k]);
-                along += (other.v[k] - own.v[k]) * g_ij[k];
-            }
-            let pair = share * Four::load(lanes, c) * along;
-            for a in 0..D {
-                let mut s = pair * g_ij[a];
-                for b in 0..D {
-                    s += (own.tau[a][b] + other.tau[a][b]) * g_ij[b];
-                }
-                f[a] += s;
-            }
+        let mut f = [Four::splat(lanes, 0.0); D];
+        let [like, other, harder, softer] = block.kinds(row);
+        let of = (lanes, block, i, &own, records);
+        self.add_forces::<_, RINGS, LIKE>(of, share, like, &mut f);
+        if !other.is_empty() {
+            self.add_forces::<_, RINGS, OTHER>(of, share, other, &mut f);
+        }
+        if !harder.is_empty() {
+            self.add_forces::<_, RINGS, HARDER>(of, share, harder, &mut f);
+        }
+        if !softer.is_empty() {
+            self.add_forces::<_, RINGS, SOFTER>(of, share, softer, &mut f);
         }
         let mut sums = [0.0; D];
         for (sum, f) in sums.iter_mut().zip(f) {
             *sum = f.sum();
         }
         sums
+    }
+
+    /// f += sum_j (m_ij tau_i + m_ji tau_j) g_ij, and the pair form's share, over groups of one KIND.
+    #[inline(always)]
+    fn add_forces<L: Lanes, const RINGS: bool, const KIND: u8>(
+        &self,
+        (lanes, block, i, own, records): (L, &Block<D>, usize, &Stresses<L, D>, &[Record]),
+        pair_share: Four<L>,
+        range: Range<usize>,
+        f: &mut [Four<L>; D],
+    ) {
+        let zero = Four::splat(lanes, 0.0);
+        let (j, g) = (&block.j[range.clone()], &block.g[range.clone()]);
+        for ((j, g), c) in j.iter().zip(g).zip(&block.c[range]) {
+            let other = stresses::<L, D, RINGS>(lanes, records, j);
+            let mut m_ij = zero;
+            if KIND == OTHER {
+                let eta = Four::gather(lanes, |m| self.viscosity[j[m] as usize]);
+                m_ij = share(lanes, Four::splat(lanes, self.viscosity[i]), eta);
+            }
+            let mut g_ij = [zero; D];
+            let mut along = zero;
+            for k in 0..D {
+                g_ij[k] = Four::load(lanes, &g[k]);
+                along += (other.v[k] - own.v[k]) * g_ij[k];
+            }
+            let pair = pair_share * Four::load(lanes, c) * along;
+            for a in 0..D {
+                let mut s = pair * g_ij[a];
+                for b in 0..D {
+                    let (own, other) = (own.tau[a][b], other.tau[a][b]);
+                    let tau = match KIND {
+                        OTHER => m_ij * own + (Four::splat(lanes, 2.0) - m_ij) * other,
+                        HARDER => own + own,
+                        SOFTER => other + other,
+                        _ => own + other,
+                    };
+                    s += tau * g_ij[b];
+                }
+                f[a] += s;
+            }
+        }
     }
 
     /// Inverse Jacobi blocks (docs/theory.md, E17): the matrix's own, but for the pair form's share, which counts twice, and what

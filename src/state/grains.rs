@@ -168,9 +168,10 @@ impl<const D: usize> Grains<D> {
         }
     }
 
-    /// Whether all arrays have the same length and every number that must be is finite and positive.
+    /// Whether all arrays have the same length, every number that must be is finite and positive, and there are no more phases than
+    /// this.
     #[must_use]
-    pub fn is_consistent(&self) -> bool {
+    pub fn is_consistent(&self, phases: usize) -> bool {
         let n = self.len();
         let lengths = [
             self.velocity.len(),
@@ -190,7 +191,12 @@ impl<const D: usize> Grains<D> {
             && [self.stress.len(), self.plastic_rate.len()] == kept(self.exact_yield)
             && [self.wall_traction.len(), self.wall_slip.len()] == kept(self.wall_friction)
             && self.pore_pressure.len() == kept(self.saturated)[0]
-            && self.pore_pressure.iter().all(|p| p.is_finite())
+            && self.phase.iter().all(|&p| usize::from(p) < phases)
+            && self
+                .pore_pressure
+                .iter()
+                .chain(&self.relaxed_shear)
+                .all(|p| p.is_finite())
             && self
                 .density
                 .iter()
@@ -201,6 +207,9 @@ impl<const D: usize> Grains<D> {
                 .position
                 .iter()
                 .chain(&self.velocity)
+                .chain(&self.listed)
+                .chain(&self.viscous_acceleration)
+                .chain(&self.viscous_change)
                 .chain(&self.wall_traction)
                 .chain(&self.wall_slip)
                 .chain(self.stress.as_flattened())

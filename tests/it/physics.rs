@@ -11,6 +11,7 @@ mod drops;
 mod films;
 mod incline;
 mod leaks;
+mod meeting;
 mod moving_walls;
 mod packing;
 mod paper_a;
