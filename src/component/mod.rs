@@ -45,6 +45,9 @@ use engine::{Engine, Inputs, Ramp};
 use lifecycle::Call;
 use outputs::FlowMass;
 
+/// Rounding of a start time over the acoustic step [1].
+const MOST_ROUNDING: f64 = 1e-3;
+
 /// Where a component is in its life. `lifecycle` holds the table of which call is allowed when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Mode {
@@ -236,6 +239,16 @@ impl Component {
         };
         if !start.is_finite() {
             return refuse("start time", start, "a finite time".to_owned());
+        }
+        // Times are doubles, and must tell internal steps apart.
+        let fine = MOST_ROUNDING * self.scene.numerics.acoustic_step();
+        let latest = fine / f64::EPSILON;
+        if start.abs() > latest {
+            let allowed = format!(
+                "at most {latest:.1e} s from 0, where doubles still tell times {fine:.1e} s apart, a thousandth of this scene's \
+                 acoustic step; count time from a later origin"
+            );
+            return refuse("start time", start, allowed);
         }
         if let Some(stop) = stop
             && !(stop.is_finite() && stop >= start)

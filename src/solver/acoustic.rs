@@ -144,7 +144,7 @@ impl<const D: usize> Solver<D> {
                         }
                         let specific = self.specific_volume(state, i);
                         for k in 0..D {
-                            let barrier = seen.map_or(0.0, |w| w.push[k]);
+                            let barrier = seen.map_or(0.0, |w| w.push[k] + w.grip[k]);
                             let a = self.gravity[k] + specific * push[k] + barrier;
                             o.velocity[k] += dt * a;
                         }

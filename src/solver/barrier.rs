@@ -9,9 +9,14 @@
 //! N is the share of the neighbourhood, as wide as a spacing, that is wall: 0.14 in front of a wall where particles rest, 0.36
 //! at most in a corner of three, 1/2 on the surface, 0.9 on the first row: nothing changes for what stays in front of walls. The force has
 //! a potential, 2 k (N - 1/2)^2 (of rings with the images of walls across the axis); on the way out only a fourth of it acts, so that it takes energy and never gives any.
+//!
+//! What rests on a wall by this push rubs on it with it, as Coulomb says: without that a ring that had thinned out on a floor glided on
+//! for ever. mu is mu_w on faces with friction, the material's mu_s without slip, none on smooth ones and of fluids:
+//!
+//!   a_i -= min(mu |a_i|, |u|/dt) u/|u|,   u the velocity along the wall, against its surface                 (W5)
 
 use crate::kernel::WendlandC2;
-use crate::math::{Vector, dot, scale};
+use crate::math::{Vector, dot, norm, scale, sub};
 
 /// The share of wall from where on it pushes [1]: that on a flat surface.
 const SURFACE: f64 = 0.5;
@@ -45,6 +50,49 @@ pub(super) struct Nearness<const D: usize> {
     slope: Vector<D>,
     /// grad N . (v_i - v_w) [1/s].
     rate: f64,
+    /// sum mu w dp^D W [1].
+    friction: f64,
+    /// sum v_w w dp^D W of the walls' surfaces [m/s].
+    carried: Vector<D>,
+}
+
+/// What rubs on a wall by the push of (W5).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rub<const D: usize> {
+    /// mu [1].
+    friction: f64,
+    /// Velocity of the wall's surface [m/s].
+    surface: Vector<D>,
+}
+
+impl<const D: usize> Rub<D> {
+    pub(super) const NONE: Self = Self {
+        friction: 0.0,
+        surface: [0.0; D],
+    };
+
+    /// Acceleration of friction on what moves at u and is pushed with `push` [m/s^2], over no more than what stops it in `dt` [s]. Across the
+    /// wall it takes half of a speed below `slow` [m/s]: what lies on it would hop from step to step for ever.
+    pub(super) fn grip(
+        &self,
+        push: &Vector<D>,
+        u: &Vector<D>,
+        (dt, slow): (f64, f64),
+    ) -> Vector<D> {
+        let size = norm(push);
+        if self.friction <= 0.0 || size == 0.0 {
+            return [0.0; D];
+        }
+        let n = scale(1.0 / size, push);
+        let slip = sub(u, &self.surface);
+        let across = dot(&slip, &n);
+        let along = sub(&slip, &scale(across, &n));
+        let speed = norm(&along);
+        let most = (self.friction * size).min(speed / dt);
+        let rubs = scale(-most / speed.max(f64::MIN_POSITIVE), &along);
+        let damped = if across.abs() < slow { across } else { 0.0 };
+        sub(&rubs, &scale(0.5 * damped / dt, &n))
+    }
 }
 
 impl<const D: usize> Nearness<D> {
@@ -52,7 +100,17 @@ impl<const D: usize> Nearness<D> {
         share: 0.0,
         slope: [0.0; D],
         rate: 0.0,
+        friction: 0.0,
+        carried: [0.0; D],
     };
+
+    /// Means over the walls.
+    pub(super) fn rub(&self) -> Rub<D> {
+        Rub {
+            friction: self.friction / self.share,
+            surface: scale(1.0 / self.share, &self.carried),
+        }
+    }
 
     /// Acceleration of a push of (W5) [m/s^2].
     pub(super) fn push(&self, push: f64) -> Vector<D> {
@@ -77,7 +135,7 @@ impl<const D: usize> Barrier<D> {
         std::array::from_fn(|k| f * x[k])
     }
 
-    /// Adds a wall point; `v` is the velocity against it.
+    /// Adds a wall point; `v` is the velocity against it, `friction` and `surface` those of its face [1, m/s].
     #[inline(always)]
     pub(super) fn add(
         &self,
@@ -85,15 +143,19 @@ impl<const D: usize> Barrier<D> {
         (x, r): (&Vector<D>, f64),
         weight: f64,
         v: &Vector<D>,
+        (friction, surface): (f64, &Vector<D>),
     ) {
         if r >= self.kernel.support() {
             return;
         }
-        sums.share += self.cell * weight * self.kernel.w(r);
+        let share = self.cell * weight * self.kernel.w(r);
+        sums.share += share;
+        sums.friction += friction * share;
         let slope = self.slope(x, r, weight);
         sums.rate += dot(&slope, v);
         for k in 0..D {
             sums.slope[k] += slope[k];
+            sums.carried[k] += share * surface[k];
         }
     }
 
@@ -122,7 +184,7 @@ mod tests {
             for k in -6..=6 {
                 let x = [0.1 * f64::from(k), height + 0.05 + 0.1 * f64::from(row)];
                 let r = x[0].hypot(x[1]);
-                barrier.add(&mut sums, (&x, r), 1.0, &[0.0, v]);
+                barrier.add(&mut sums, (&x, r), 1.0, &[0.0, v], (0.5, &[0.2, 0.0]));
             }
         }
         sums
@@ -137,6 +199,20 @@ mod tests {
         assert!(barrier.push(&inside, 10.0) > 0.0);
         // Against the slope, which points into the wall.
         assert!(inside.slope[1] < 0.0 && inside.slope[0].abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_pushed_rubs_along_the_wall_until_it_moves_with_it() {
+        let rub = seen(-0.02, 0.0).rub();
+        let push = [0.0, 3.0];
+        assert_eq!(rub.grip(&push, &[1.2, -7.0], (0.1, 0.5)), [-1.5, 0.0]);
+        assert_eq!(rub.grip(&push, &[-1.2, 7.0], (0.1, 0.5)), [1.5, 0.0]);
+        let last = rub.grip(&push, &[0.25, 0.0], (0.1, 0.5));
+        assert!((last[0] + 0.5).abs() < 1e-12 && last[1] == 0.0, "{last:?}");
+        assert_eq!(rub.grip(&push, &[0.2, 1.0], (0.1, 0.5)), [0.0, 0.0]);
+        assert_eq!(rub.grip(&push, &[0.2, 0.4], (0.1, 0.5)), [0.0, -2.0]);
+        let smooth = Rub::<2>::NONE;
+        assert_eq!(smooth.grip(&push, &[1.2, 0.0], (0.1, 0.5)), [0.0, 0.0]);
     }
 
     #[test]

@@ -117,7 +117,8 @@ impl<const D: usize> Solver<D> {
         let r = if m.is_fluid() { k.correction } else { 1.0 };
         response.viscosity =
             r * r * m.capped_viscosity(r * k.shear, p, correction, self.numerics.cap_time);
-        if self.has_bulk_friction {
+        // What is pulled has no friction against changes of its volume.
+        if m.bulk_friction > 0.0 && p > 0.0 {
             response.normal_pressure += bulk_pressure(
                 m.bulk_friction,
                 p,

@@ -119,6 +119,14 @@ impl<const D: usize> Solver<D> {
         for (n, source) in self.sources.iter().enumerate() {
             let row = source.row_mass();
             let inflow = &mut state.inflows[n];
+            if rates[n] <= 0.0 {
+                // Closed: a row that was due and had no room stays out.
+                inflow.blocked = false;
+                if inflow.pending >= row {
+                    inflow.pending = 0.0;
+                }
+                continue;
+            }
             inflow.pending += rates[n] * dt;
             if inflow.pending < row {
                 continue;
@@ -155,9 +163,9 @@ impl<const D: usize> Solver<D> {
         came
     }
 
-    /// Impulse of the material on walls whose force somebody reads, over one step [N s].
-    pub(super) fn add_reactions(&mut self, state: &mut State<D>, dt: f64) {
-        if !self.walls.groups.iter().any(|g| g.wants_force) {
+    /// Impulse of the material on walls whose force somebody reads, or on all of them, over one step [N s].
+    pub(super) fn add_reactions(&mut self, state: &mut State<D>, dt: f64, all: bool) {
+        if !all && !self.walls.groups.iter().any(|g| g.wants_force) {
             return;
         }
         let share = self.numerics.pair_viscosity_share;
@@ -175,13 +183,21 @@ impl<const D: usize> Solver<D> {
                     continue;
                 }
                 let tau = self.viscous.stress(i);
+                // dt a of friction, for each part of the push.
+                let grip = seen.filter(|w| w.grip != [0.0; D]).map(|w| {
+                    let size2 = dot(&w.push, &w.push);
+                    (
+                        scale(dt * barrier * state.grains.mass[i] / size2, &w.grip),
+                        w.push,
+                    )
+                });
                 let carried = seen.map_or([0.0; D], |w| w.carried);
                 let leant = seen.map_or([0.0; D], |w| self.leant(state, i, &w.lean));
                 for &w in block.wall_row(row) {
                     let group = self.walls.group[w as usize] as usize;
                     let weight = self.walls.weight[w as usize];
                     let (x, r) = self.wall_offset(xi, w);
-                    if !self.walls.groups[group].wants_force
+                    if !(all || self.walls.groups[group].wants_force)
                         || weight == 0.0
                         || r >= support
                         || r == 0.0
@@ -226,6 +242,9 @@ impl<const D: usize> Solver<D> {
                         }
                         let impulse = -dt * barrier * state.grains.mass[i];
                         part = add(&part, &scale(impulse, &away));
+                        if let Some((grip, push)) = &grip {
+                            part = add(&part, &scale(-dot(&away, push), grip));
+                        }
                     }
                     for k in 0..D {
                         state.impulse[group][k] -= dt * self.width * volume * force[k] + part[k];
@@ -233,6 +252,6 @@ impl<const D: usize> Solver<D> {
                 }
             }
         }
-        self.add_friction_reactions(state, dt);
+        self.add_friction_reactions(state, dt, all);
     }
 }

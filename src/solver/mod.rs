@@ -350,11 +350,13 @@ impl<const D: usize> Solver<D> {
                 return self.step_paper_b(&choices, state, (dt, bound), on_move);
             }
         }
+        // Forces tell when a scene may sleep, whoever reads them.
+        let was_quiet = self.stays_awake.is_none() && self.is_quiet(&state.grains);
         self.find_shift(state);
         let acoustic_dt = self.step_sound(state, dt);
         let iterations = self.solve_viscous(state, dt)?;
         let impulse = state.impulse.clone();
-        self.add_reactions(state, dt);
+        self.add_reactions(state, dt, was_quiet);
         self.note_lone(state);
         self.move_grains(state, dt, acoustic_dt)?;
         on_move(&self.before, &state.grains);
@@ -378,7 +380,7 @@ impl<const D: usize> Solver<D> {
         state.iterations += u64::from(iterations);
         state.step_size = dt;
         if self.stays_awake.is_none() {
-            self.notice_rest(state, inputs, &impulse, dt);
+            self.notice_rest(state, inputs, was_quiet, &impulse, dt);
             if state.rest.asleep {
                 // Velocities are 0 from here on, and what follows from them is what a restored state gives.
                 self.derive(state);

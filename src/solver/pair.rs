@@ -2,6 +2,7 @@
 
 use crate::math::{LANES, Quad, Tensor, Vector};
 
+use super::barrier::Rub;
 use super::meeting::KINDS;
 use super::mirror::Image;
 use super::wall_friction::Contact;
@@ -29,6 +30,9 @@ pub(super) struct WallRow<const D: usize> {
     /// 4 k (N - 1/2) of (W5) [m^2/s^2] and its acceleration [m/s^2]; 0 in front of walls.
     pub(super) barrier: f64,
     pub(super) push: Vector<D>,
+    /// What rubs by that push, and the acceleration of it in this step [m/s^2].
+    pub(super) rub: Rub<D>,
+    pub(super) grip: Vector<D>,
     /// Of fluids: sum (I - n n^T) |F| V (n.x)^2 over points without slip, how far their shear stress is carried on into walls
     /// (docs/theory.md, W4); else 0.
     pub(super) lean: Tensor<D>,

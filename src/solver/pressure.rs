@@ -90,8 +90,17 @@ impl<const D: usize> Solver<D> {
                     if self.has_fluids {
                         self.carry_slope(&state.grains.velocity[i], dt, w, &mut o.velocity);
                     }
+                    if w.barrier > 0.0 {
+                        for k in 0..D {
+                            o.velocity[k] += dt * w.push[k];
+                        }
+                        // Over all acoustic steps there may be.
+                        let whole = dt * f64::from(self.numerics.acoustic_steps);
+                        let slow = 2.0 * self.gravity_norm * whole;
+                        w.grip = w.rub.grip(&w.push, &o.velocity, (whole, slow));
+                    }
                     for k in 0..D {
-                        o.velocity[k] += dt * w.push[k];
+                        o.velocity[k] += dt * w.grip[k];
                         w.cv[k] *= eta;
                         for c in 0..D {
                             w.c[k][c] *= eta;

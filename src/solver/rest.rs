@@ -106,15 +106,16 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Counts quiet steps after a step of length dt; `before` are the impulses at its beginning.
+    /// Counts quiet steps, quiet at both ends, after a step of length dt; `before` are the impulses at its beginning.
     pub(super) fn notice_rest(
         &self,
         state: &mut State<D>,
         inputs: &StepInputs<'_>,
+        was_quiet: bool,
         before: &[[f64; D]],
         dt: f64,
     ) {
-        if !(self.is_left_alone(state, inputs) && self.is_quiet(&state.grains)) {
+        if !(was_quiet && self.is_left_alone(state, inputs) && self.is_quiet(&state.grains)) {
             state.rest = RestState::default();
             return;
         }
@@ -148,7 +149,8 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    fn is_quiet(&self, grains: &Grains<D>) -> bool {
+    /// Whether speeds are those of rest.
+    pub(super) fn is_quiet(&self, grains: &Grains<D>) -> bool {
         let c0 = self.numerics.sound_speed;
         let fast = (FASTEST * c0).powi(2);
         let (mut mass, mut twice_energy) = (0.0, 0.0);

@@ -331,13 +331,13 @@ impl<const D: usize> Solver<D> {
         self.walls.groups[c.group as usize].friction * pressure.max(0.0)
     }
 
-    /// Adds the impulse of friction over one step to those on walls whose force somebody reads [N s].
-    pub(super) fn add_friction_reactions(&self, state: &mut State<D>, dt: f64) {
+    /// Adds the impulse of friction over one step to those on walls whose force somebody reads, or on all [N s].
+    pub(super) fn add_friction_reactions(&self, state: &mut State<D>, dt: f64, all: bool) {
         for (row, held) in self.friction.rows.iter().zip(&self.viscous.held) {
             let v = &self.viscous.velocity[row.i];
             for c in &self.friction.contacts[row.range.clone()] {
                 let group = c.group as usize;
-                if !self.walls.groups[group].wants_force {
+                if !(all || self.walls.groups[group].wants_force) {
                     continue;
                 }
                 let push: Vector<D> = std::array::from_fn(|k| {

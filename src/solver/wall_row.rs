@@ -4,11 +4,12 @@
 //! Symbols: x = x_i - x_w, F = W'(r)/r <= 0, g = V_i w F x, v_w velocity of the point, n normal of its face towards the
 //! material, P = n n^T at free slip and 1 at no slip.
 
+use crate::material::{Friction as _, Material};
 use crate::math::{Tensor, Vector, add_outer, apply, dot, scale, sub, trace};
 use crate::state::State;
 
 use super::Solver;
-use super::barrier::Nearness;
+use super::barrier::{Nearness, Rub};
 use super::fluid_row::Row;
 use super::pair::WallRow;
 use super::wall_friction::{Contact, Face};
@@ -161,10 +162,11 @@ impl<const D: usize> Solver<D> {
         let last = face?;
         let flatness = self.add_face(&last, i, (contacts, first_contact), &mut w, flatness);
         if nearest2 < (CLEAR * self.numerics.spacing).powi(2) {
-            let nearness = self.nearness(xi, vi, near);
+            let nearness = self.nearness(xi, vi, near, material);
             w.barrier = self.barrier.push(&nearness, self.sound_speed_of(material));
             if w.barrier > 0.0 {
                 w.push = nearness.push(w.barrier);
+                w.rub = nearness.rub();
             }
         }
         let wall_gradient = w.gradient(vi, true);
@@ -259,15 +261,31 @@ impl<const D: usize> Solver<D> {
     }
 
     /// What (W5) is made of: sums over all wall points near a particle at xi, moving at vi.
-    fn nearness(&self, xi: &Vector<D>, vi: &Vector<D>, near: &[u32]) -> Nearness<D> {
+    fn nearness(
+        &self,
+        xi: &Vector<D>,
+        vi: &Vector<D>,
+        near: &[u32],
+        material: &Material,
+    ) -> Nearness<D> {
         let mut nearness = Nearness::NONE;
+        let rough = material.law.static_friction();
         for &wall in near {
             let (x, r) = self.wall_offset(xi, wall);
             let weight = self.walls.weight[wall as usize];
             let against = sub(vi, &self.point_velocity(wall));
-            self.barrier.add(&mut nearness, (&x, r), weight, &against);
+            let spec = &self.walls.groups[self.walls.group[wall as usize] as usize];
+            let friction = match (rough > 0.0, spec.free_slip) {
+                (true, true) => spec.friction,
+                (true, false) => rough,
+                (false, _) => 0.0,
+            };
+            let face = (friction, &self.walls.velocity[wall as usize]);
+            self.barrier
+                .add(&mut nearness, (&x, r), weight, &against, face);
             if let Some((x, r)) = self.wall_image(xi, wall) {
-                self.barrier.add(&mut nearness, (&x, r), weight, &against);
+                self.barrier
+                    .add(&mut nearness, (&x, r), weight, &against, face);
             }
         }
         nearness
@@ -287,6 +305,8 @@ impl<const D: usize> WallRow<D> {
             flat: false,
             barrier: 0.0,
             push: [0.0; D],
+            rub: Rub::NONE,
+            grip: [0.0; D],
             lean: [[0.0; D]; D],
             lean_less: [[0.0; D]; D],
             moment: [[0.0; D]; D],

@@ -27,6 +27,8 @@ fn wrong_calls() -> Vec<(Place, Call, &'static str)> {
         (New, |d, _| d.exit_initialization(), "exit_initialization is not allowed in mode Instantiated; allowed in Initialization"),
         (New, |d, _| d.terminate(), "terminate is not allowed in mode Instantiated; allowed in Stepping or Failed"),
         (New, |d, _| d.enter_initialization(f64::NAN, None), "start time: found NaN s, allowed a finite time"),
+        (New, |d, _| d.enter_initialization(1e12, None), "start time: found 1000000000000 s, allowed at most"),
+        (New, |d, _| d.enter_initialization(-1e12, None), "count time from a later origin"),
         (New, |d, _| d.enter_initialization(2.0, Some(1.0)), "stop time: found 1 s, allowed a finite time from 2 s, the start, on"),
         (New, |d, _| d.enter_initialization(0.0, Some(f64::NAN)), "stop time: found NaN s"),
         (Initializing, |d, s| d.do_step(0.0, s.step()), "do_step is not allowed in mode Initialization; allowed in Stepping"),

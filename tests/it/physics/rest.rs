@@ -35,6 +35,30 @@ fn a_heap_that_sleeps_is_the_heap_that_does_not() {
     assert_eq!(asleep.get("solver.steps"), steps);
 }
 
+/// A gauge of force changes nothing but what is read: the same steps, and sleep at the same time.
+#[test]
+fn who_reads_forces_does_not_tell_when_a_silo_sleeps() {
+    let edit = ("spacing = \"3.125 mm\"", "spacing = \"6.25 mm\"");
+    let gauge = "[gauges.gate_force]\nkind = \"force\"\non = \"gate.outlet\"";
+    let text = case("silo_gate", &[]).source.clone();
+    let name = text.lines().find_map(|l| l.strip_prefix("[gates."));
+    let gauge = gauge.replace("outlet", name.unwrap().trim_end_matches(']'));
+    assert!(text.contains(&gauge), "{text}");
+    let steps = [None, Some((gauge.as_str(), ""))].map(|without| {
+        let edits: Vec<_> = std::iter::once(edit).chain(without).collect();
+        let mut unit = Unit::new(&case("silo_gate", &edits));
+        let gate = unit.component.variables().rows().iter();
+        let gate = gate
+            .map(|v| v.name.clone())
+            .find(|n| n.ends_with(".opening"));
+        unit.set(&gate.unwrap(), 0.0);
+        unit.run_to(2.0);
+        assert!(unit.component.particles().asleep.iter().all(|a| *a == 1));
+        unit.get("solver.steps")
+    });
+    assert_eq!(steps[0], steps[1]);
+}
+
 /// A small silo, closed.
 fn silo(numerics: &str) -> Unit {
     let numerics = format!("spacing = \"6.25 mm\"\n{numerics}");
