@@ -7,7 +7,7 @@ use crate::bus::keys::Keys;
 use crate::bus::protocol::Fields;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::reply::Reply;
-use crate::bus::request::Request;
+use crate::bus::request::{LONGEST_TOLD, Request};
 use crate::bus::set_point::SetPoint;
 use crate::bus::status::{Shared, Status, lock};
 use crate::bus::stepping::{Exchange, Note, Task, WAITING_SET_POINTS, WAITING_TASKS};
@@ -132,7 +132,11 @@ impl Desk {
             no_parameters(&query)?;
             Request::parse(Verb::from_name(name)?, &bytes)
         });
-        let body = String::from_utf8_lossy(&bytes).into_owned();
+        let shown = match read {
+            Ok(_) => &bytes[..],
+            Err(_) => &bytes[..bytes.len().min(LONGEST_TOLD)],
+        };
+        let body = String::from_utf8_lossy(shown).into_owned();
         let exact = !key.contains(['*', '$']);
         let verb = key.rsplit('/').next().unwrap_or_default().to_owned();
         let mut waiting = Waiting {
