@@ -1,7 +1,7 @@
 //! The callbacks. They run on Zenoh's threads: they check, hand on to bounded queues, and never wait.
 
-use super::failed;
-use super::replies::{Job, Waiting, ended};
+use super::replies::{Job, Waiting, busy, ended};
+use super::{WAITING_REPLIES, failed};
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
 use crate::bus::protocol::Fields;
@@ -180,15 +180,7 @@ impl Desk {
         };
         let (refusal, task) = match self.tasks.try_send(task) {
             Ok(()) => return,
-            Err(TrySendError::Full(task)) => (
-                Refusal::new(
-                    Code::Busy,
-                    format!(
-                        "{WAITING_TASKS} tasks wait already; nothing happened; send it again later"
-                    ),
-                ),
-                task,
-            ),
+            Err(TrySendError::Full(task)) => (busy(WAITING_TASKS, "tasks"), task),
             Err(TrySendError::Disconnected(task)) => (ended(), task),
         };
         if let Task::Call { request, asked, .. } = task {
@@ -255,8 +247,12 @@ impl Desk {
             shared: self.shared.clone(),
             jobs: self.jobs.clone(),
         };
-        // If the queue is full or gone, the job is dropped here, which answers.
-        let _ = self.jobs.try_send(Job::LastValues(waiting));
+        // If the queue is gone, the job is dropped here, which answers.
+        if let Err(TrySendError::Full(Job::LastValues(waiting))) =
+            self.jobs.try_send(Job::LastValues(waiting))
+        {
+            waiting.refuse(&busy(WAITING_REPLIES, "replies"));
+        }
     }
 }
 
