@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{CliError, log, say};
 use crate::report::report;
+use crate::whole_file;
 
 /// What may be typed after `sandgate report`.
 #[derive(Debug, clap::Args)]
@@ -32,7 +33,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         )));
     }
     let page = report(&args.file, usize::from(args.particles_mb) * 1_000_000)?;
-    replace(&args.output, page.html.as_bytes()).map_err(|source| CliError::File {
+    whole_file::replace(&args.output, page.html.as_bytes()).map_err(|source| CliError::File {
         action: "write",
         path: args.output.clone(),
         source,
@@ -48,15 +49,4 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     ))?;
     log::warn_unless_complete(&args.file, &page.ending);
     Ok(())
-}
-
-/// Writes beside and renames, so that a full disk leaves the old page. What is no file (`/dev/stdout`) is written to.
-fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
-        return std::fs::write(path, bytes);
-    }
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    std::fs::write(&beside, bytes)?;
-    std::fs::rename(&beside, path)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Ranks of ARCHITECTURE.md. A module uses modules of lower rank, and of its own rank only itself.
-const RANKS: [(&str, u8); 21] = [
+const RANKS: [(&str, u8); 22] = [
     ("math", 0),
     ("units", 0),
     ("kernel", 1),
@@ -16,6 +16,7 @@ const RANKS: [(&str, u8); 21] = [
     ("solver", 4),
     ("gauge", 4),
     ("scene", 5),
+    ("whole_file", 5),
     ("component", 6),
     ("wire", 7),
     ("fmi", 8),
