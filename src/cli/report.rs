@@ -25,10 +25,10 @@ pub(super) struct Args {
 /// [`CliError::Report`], [`CliError::File`]; [`CliError::Usage`] if the page would replace the log. A cut is told on
 /// standard error and is no error.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
-    if real(&args.output).is_some_and(|output| real(&args.file) == Some(output)) {
+    if is_of(&args.file, &args.output) {
         return Err(CliError::Usage(format!(
-            "--output {} is the log itself, which is not overwritten; give another file",
+            "--output {} is the log itself or the name it gets when it is finished, which is not overwritten; give \
+             another file",
             args.output.display()
         )));
     }
@@ -49,4 +49,23 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     ))?;
     log::warn_unless_complete(&args.file, &page.ending);
     Ok(())
+}
+
+/// Whether a page at `output` would be in the place of the log: also one that is called `.part` still.
+fn is_of(log: &Path, output: &Path) -> bool {
+    let (Some(log), Some(output)) = (real(log), real(output)) else {
+        return false;
+    };
+    let mut unfinished = output.clone().into_os_string();
+    unfinished.push(".part");
+    log == output || log == Path::new(&unfinished)
+}
+
+/// The one way to name a file, also one that is not there yet.
+fn real(path: &Path) -> Option<PathBuf> {
+    std::fs::canonicalize(path).ok().or_else(|| {
+        let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
+        let folder = std::fs::canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
+        Some(folder.join(path.file_name()?))
+    })
 }
