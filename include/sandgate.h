@@ -14,8 +14,8 @@
  *              changes nothing and the instance goes on; after SANDGATE_STEP_FAILED only reading, restore, reset and
  *              terminate are allowed; after SANDGATE_BROKEN only restore, reset and free. No call ever ends the
  *              process, changes the locale, the working directory, signal handlers or the floating-point mode.
- *   Files      None is read or written but those that you name: by sandgate_create_from_file and by the parameter
- *              log.path (docs/logs.md).
+ *   Files      None is read or written but those that you name: by sandgate_create_from_file and by the parameters
+ *              log.path (docs/logs.md) and zenoh.config (docs/zenoh.md).
  *   Results    The same calls give the same bits, whatever the number of threads.
  */
 #ifndef SANDGATE_H
@@ -191,7 +191,11 @@ int32_t sandgate_initialize(sandgate_instance *instance, double start, double st
 int32_t sandgate_set(sandgate_instance *instance, const uint32_t *references, size_t reference_count,
                      const double *values, size_t value_count);
 
-/* Reads variables; arguments as in sandgate_set. Changes nothing, computes nothing. */
+/*
+ * Reads variables; arguments as in sandgate_set. Changes nothing, computes nothing, except before initialisation ends and
+ * after a fixed parameter was set: an output builds the scene anew then, and SANDGATE_SCENE or SANDGATE_BAD_ARGUMENT
+ * says that the parameters make none.
+ */
 int32_t sandgate_get(const sandgate_instance *instance, const uint32_t *references, size_t reference_count,
                      double *values, size_t value_count);
 

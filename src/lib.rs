@@ -55,5 +55,6 @@ pub mod stress;
 pub mod units;
 #[cfg(feature = "cli")]
 pub mod validate;
+mod whole_file;
 #[cfg(any(feature = "record", feature = "bus"))]
 pub mod wire;

@@ -384,16 +384,17 @@ pub(crate) extern "C" fn sandgate_save(
     mut size: Out<usize>,
 ) -> i32 {
     code(instance.call("sandgate_save", Need::Sound, |i| {
-        let state = i.save()?;
-        let needed = state.bytes.len();
-        if needed > capacity {
-            return Err(Fault::border(format!(
-                "found room for {capacity} bytes, the state has {needed}"
-            )));
-        }
-        size.check(1, "size")?;
+        let state = i.save_if(|needed| {
+            if needed > capacity {
+                return Err(Fault::border(format!(
+                    "found room for {capacity} bytes, the state has {needed}"
+                )));
+            }
+            size.check(1, "size")?;
+            bytes.check(needed, "bytes")
+        })?;
         bytes.write(&state.bytes, "bytes")?;
-        size.write(&[needed], "size")
+        size.write(&[state.bytes.len()], "size")
     }))
 }
 

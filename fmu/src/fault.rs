@@ -12,6 +12,10 @@ pub(crate) enum Fault {
     /// The arguments or the instance do not allow the call at all.
     Border(String),
     /// The log or the Zenoh session that parameters ask for cannot be opened or written.
+    #[cfg_attr(
+        not(feature = "record"),
+        expect(dead_code, reason = "only logs and Zenoh are outside")
+    )]
     Outside(String),
     /// An earlier call broke down in the middle, or this one did: the instance must be reset or given a state.
     Broken(String),

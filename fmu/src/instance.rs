@@ -388,8 +388,17 @@ impl Instance {
 
     /// Everything, as bytes.
     pub(crate) fn save(&mut self) -> Result<SavedState, Fault> {
+        self.save_if(|_| Ok(()))
+    }
+
+    /// As `save`, if the caller has room for so many bytes: a state that nobody gets is in no log.
+    pub(crate) fn save_if(
+        &mut self,
+        fits: impl FnOnce(usize) -> Result<(), Fault>,
+    ) -> Result<SavedState, Fault> {
         self.journal.asks(&self.component);
         let bytes = self.component.save()?;
+        fits(bytes.len())?;
         self.journal.saved(&self.component, &bytes)?;
         Ok(SavedState {
             bytes,

@@ -7,6 +7,7 @@ use sandgate::fmi::FmiVersion;
 use crate::fault::Fault;
 
 /// As `sandgate::wire::Moment`.
+#[expect(dead_code, reason = "only a log reads it")]
 pub(crate) struct Moment {
     pub(crate) time: f64,
     pub(crate) inputs: Vec<(Vec<u32>, Vec<f64>)>,

@@ -102,5 +102,5 @@ pub fn write(path: &Path, text: &str) -> Result<(), Error> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(failed)?;
     }
-    std::fs::write(path, text).map_err(failed)
+    crate::whole_file::replace(path, text.as_bytes()).map_err(failed)
 }

@@ -243,7 +243,7 @@ fn whole(
     let outputs: Vec<(ValueReference, usize)> = outputs.map(|r| (r.reference, r.len())).collect();
     let references: Vec<ValueReference> = outputs.iter().map(|o| o.0).collect();
     let mut values = vec![0.0; outputs.iter().map(|o| o.1).sum()];
-    // A gauge is read once for a state: a restored one is a new one.
+    // Gauges are sampled within `do_step`; reading outputs copies what they found, also that of a restored state.
     let saved = component.save().map_err(|e| refused(e.to_string()))?;
     add("save", &mut || {
         std::hint::black_box(component.save().map_or(0, |bytes| bytes.len()));
@@ -252,11 +252,11 @@ fn whole(
     add("restore", &mut || {
         restored += usize::from(component.restore(&saved).is_ok());
     });
-    add("restore and all outputs, gauges among them", &mut || {
+    add("restore and read of all outputs", &mut || {
         restored += usize::from(component.restore(&saved).is_ok());
         restored += usize::from(component.get(&references, &mut values).is_ok());
     });
-    add("all outputs once more", &mut || {
+    add("read of all outputs", &mut || {
         restored += usize::from(component.get(&references, &mut values).is_ok());
     });
     add("publish: a picture of all particles as bytes", &mut || {

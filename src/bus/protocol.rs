@@ -255,7 +255,10 @@ impl Protocol {
                 ))
             }
             Verb::Restore => {
-                component.restore(&request.state)?;
+                match self.broken {
+                    true => component.restore_anew(&request.state)?,
+                    false => component.restore(&request.state)?,
+                }
                 self.new_epoch(component, AppliedEvent::Restore, request, observer);
                 Ok(one("state_hash", component.state_hash().into()))
             }
@@ -418,13 +421,10 @@ fn reset_with(component: &mut Component, assignment: &Assignment) -> Result<(), 
     if assignment.references.is_empty() {
         return Ok(component.reset()?);
     }
-    let before = component.save()?;
-    component.reset()?;
-    let set = component.set(&assignment.references, &assignment.values);
-    if let Err(error) = set.and_then(|()| component.settle()) {
-        component.restore(&before)?;
-        return Err(error.into());
-    }
+    let mut fresh = component.anew()?;
+    fresh.set(&assignment.references, &assignment.values)?;
+    fresh.settle()?;
+    *component = fresh;
     Ok(())
 }
 

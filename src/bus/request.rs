@@ -101,11 +101,15 @@ impl Request {
         )))
     }
 
-    /// `req` of a body that could not be read as a request, so that its refusal can name it.
+    /// `req` of a body that could not be read as a request, so that its refusal can name it. A long one is not looked
+    /// into: whoever sends it would have the callback of everybody work on it.
     #[must_use]
     pub fn req_of(body: &[u8]) -> String {
+        if body.len() > LONGEST_TOLD {
+            return String::new();
+        }
         match json::parse(body) {
-            Ok(Value::Object(map)) if body.len() <= 1 << 20 => map
+            Ok(Value::Object(map)) => map
                 .get("req")
                 .and_then(Value::as_str)
                 .unwrap_or_default()
@@ -114,6 +118,9 @@ impl Request {
         }
     }
 }
+
+/// Longest body that is looked into or kept after it was refused (bytes).
+pub(super) const LONGEST_TOLD: usize = 1 << 20;
 
 /// Longest step (ns): one hour. Longer is several steps.
 const MAX_DT_NS: u64 = 3_600_000_000_000;

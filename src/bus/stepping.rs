@@ -177,7 +177,7 @@ impl Stepper<'_> {
                 exchange.status = reply.status();
                 exchange.reply.clone_from(&reply.body);
                 let ends = reply.ends;
-                if request.verb.changes() && reply.error.is_none() {
+                if request.verb.drives() && reply.error.is_none() {
                     self.watch.hear();
                     self.shared.orchestrator_lost.store(false, Relaxed);
                 }

@@ -104,6 +104,13 @@ impl Verb {
         self.row().3
     }
 
+    /// Whether it changes the component or who steps it: then whoever sends it counts as the orchestrator. Anybody may
+    /// write a line into the log.
+    #[must_use]
+    pub fn drives(self) -> bool {
+        self.changes() && self != Self::Log
+    }
+
     /// Longest body (bytes): room for a state in `restore`, little else.
     #[must_use]
     pub fn max_body(self) -> usize {
@@ -124,6 +131,8 @@ mod tests {
             assert_eq!(verb as usize, position);
             assert_eq!(Verb::from_name(verb.name()), Ok(verb));
         }
+        let changing = Verb::all().filter(|verb| verb.changes() && !verb.drives());
+        assert_eq!(changing.collect::<Vec<_>>(), [Verb::Log]);
         let refusal = Verb::from_name("stepp").unwrap_err();
         assert_eq!(refusal.code, Code::BadRequest);
         assert!(refusal.message.contains("terminate"), "{refusal}");

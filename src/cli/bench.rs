@@ -25,7 +25,7 @@ enum What {
     Speed(Speed),
     /// Error against CPU time over resolutions and numerical choices, with the Pareto front
     Precision(Precision),
-    /// Each part by itself: search, sweeps, equation of state, solve, gauges, save, restore, step, log, publish
+    /// Each part by itself: search, sweeps, equation of state, solve, step, save, restore, outputs, log, publish
     Units(Units),
     /// Two kept runs of `bench units`, of two commits: each part's time and the ratio
     Compare(Compare),

@@ -102,7 +102,7 @@ fn libraries(args: &Args) -> Result<Vec<PathBuf>, Error> {
     if !args.library.is_empty() {
         let given = args.library.iter();
         return given
-            .map(|path| library::locate_kind(Some(path.as_path()), args.kind()))
+            .map(|path| library::locate(Some(path.as_path()), args.kind()))
             .collect();
     }
     let mut platforms = args.platform.clone();
@@ -113,7 +113,7 @@ fn libraries(args: &Args) -> Result<Vec<PathBuf>, Error> {
     platforms.sort_by_key(|platform| platform.name());
     platforms.dedup();
     let found = platforms.into_iter().map(|platform| match platform {
-        Platform::X64Linux if !args.portable => library::locate_kind(None, args.kind()),
+        Platform::X64Linux if !args.portable => library::locate(None, args.kind()),
         _ => cross::portable(platform),
     });
     found.collect()

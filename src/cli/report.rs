@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{CliError, log, say};
 use crate::report::report;
+use crate::whole_file;
 
 /// What may be typed after `sandgate report`.
 #[derive(Debug, clap::Args)]
@@ -24,15 +25,15 @@ pub(super) struct Args {
 /// [`CliError::Report`], [`CliError::File`]; [`CliError::Usage`] if the page would replace the log. A cut is told on
 /// standard error and is no error.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
-    if real(&args.output).is_some_and(|output| real(&args.file) == Some(output)) {
+    if is_of(&args.file, &args.output) {
         return Err(CliError::Usage(format!(
-            "--output {} is the log itself, which is not overwritten; give another file",
+            "--output {} is the log itself or the name it gets when it is finished, which is not overwritten; give \
+             another file",
             args.output.display()
         )));
     }
     let page = report(&args.file, usize::from(args.particles_mb) * 1_000_000)?;
-    replace(&args.output, page.html.as_bytes()).map_err(|source| CliError::File {
+    whole_file::replace(&args.output, page.html.as_bytes()).map_err(|source| CliError::File {
         action: "write",
         path: args.output.clone(),
         source,
@@ -50,13 +51,21 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Writes beside and renames, so that a full disk leaves the old page. What is no file (`/dev/stdout`) is written to.
-fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
-        return std::fs::write(path, bytes);
-    }
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    std::fs::write(&beside, bytes)?;
-    std::fs::rename(&beside, path)
+/// Whether a page at `output` would be in the place of the log: also one that is called `.part` still.
+fn is_of(log: &Path, output: &Path) -> bool {
+    let (Some(log), Some(output)) = (real(log), real(output)) else {
+        return false;
+    };
+    let mut unfinished = output.clone().into_os_string();
+    unfinished.push(".part");
+    log == output || log == Path::new(&unfinished)
+}
+
+/// The one way to name a file, also one that is not there yet.
+fn real(path: &Path) -> Option<PathBuf> {
+    std::fs::canonicalize(path).ok().or_else(|| {
+        let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
+        let folder = std::fs::canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
+        Some(folder.join(path.file_name()?))
+    })
 }

@@ -11,6 +11,7 @@
 
 mod access;
 mod advance;
+mod anew;
 mod engine;
 mod error;
 mod host;

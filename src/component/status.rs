@@ -1,4 +1,5 @@
-//! The one map from errors to numbers: FMI status, C code, exit code of the program, code of a bus reply.
+//! What a component's errors are outside: FMI status, C code, exit code of the program, code of a bus reply. Errors that
+//! an adapter has of its own (a file, a pointer, a request that is not JSON) are numbered there.
 
 use super::{Error, Severity};
 

@@ -7,8 +7,6 @@ use super::Error;
 
 /// File name of the shared library.
 pub const FILE_NAME: &str = "libsandgate_fmu.so";
-/// What builds it.
-pub const BUILD_COMMAND: &str = "cargo build --release -p sandgate-fmu";
 
 /// Which of the shared libraries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,21 +41,13 @@ impl Kind {
     }
 }
 
-/// The shared library: `explicit` if given; in a source tree what a build there gives; else the file beside the program.
+/// The shared library of a kind: `explicit` if given; in a source tree what a build there gives; else the file beside the program.
 ///
 /// The build comes before the file beside the program, so that a library of yesterday's sources is never packed.
 ///
 /// # Errors
 /// [`Error::Library`] names what was looked for and the command that builds it.
-pub fn locate(explicit: Option<&Path>) -> Result<PathBuf, Error> {
-    locate_kind(explicit, Kind::Plain)
-}
-
-/// As [`locate`], of a kind.
-///
-/// # Errors
-/// As [`locate`].
-pub fn locate_kind(explicit: Option<&Path>, kind: Kind) -> Result<PathBuf, Error> {
+pub fn locate(explicit: Option<&Path>, kind: Kind) -> Result<PathBuf, Error> {
     let (file_name, command) = (kind.file_name(), kind.build_command());
     if let Some(path) = explicit {
         return if path.is_file() {
@@ -152,8 +142,12 @@ mod tests {
 
     #[test]
     fn a_library_that_is_not_there_is_named() {
-        let error = locate(Some(Path::new("nowhere.so"))).expect_err("not there");
+        let error = locate(Some(Path::new("nowhere.so")), Kind::Plain).expect_err("not there");
         assert!(error.to_string().contains("nowhere.so is not a file"));
-        assert!(error.to_string().contains(BUILD_COMMAND));
+        assert!(
+            error
+                .to_string()
+                .contains("cargo build --release -p sandgate-fmu")
+        );
     }
 }

@@ -13,6 +13,7 @@ use super::slot::{self, SlotError};
 use super::{Error, FmiVersion, Platform, description, identifier, page::page, terminals};
 use crate::component::Component;
 use crate::scene::Scene;
+use crate::whole_file;
 
 const LICENSE_APACHE: &str = include_str!("../../LICENSE-APACHE");
 const LICENSE_MIT: &str = include_str!("../../LICENSE-MIT");
@@ -112,9 +113,7 @@ pub fn pack_with(scene: &Scene, packing: &Packing, out: &Path) -> Result<(), Err
         }
     }
     let archive = archive(&entries).map_err(|source| file("write", out, source))?;
-    let part = out.with_extension("fmu.part");
-    fs::write(&part, archive).map_err(|source| file("write", &part, source))?;
-    fs::rename(&part, out).map_err(|source| file("write", out, source))
+    whole_file::replace(out, &archive).map_err(|source| file("write", out, source))
 }
 
 /// Names in the archive and bytes of the libraries, each with the scene in its slot.

@@ -38,7 +38,7 @@ impl<const D: usize> PressureProbe<D> {
 pub(super) fn fit_at<const D: usize>(view: &View<D>, at: &[f64; D]) -> Option<f64> {
     let mut weights = 0.0;
     let mut near: Vec<(f64, [f64; D], f64)> = Vec::new();
-    view.for_each_particle_at(at, |j, x, r| {
+    view.for_each_particle(at, |j, x, r| {
         let weight = view.volume(j) * view.kernel.w(r);
         weights += weight;
         near.push((weight, crate::math::sub(&x, at), view.pressure[j]));

@@ -72,14 +72,9 @@ impl<const D: usize> View<'_, D> {
         self.geometry.is_axisymmetric() && at[0] < radius
     }
 
-    /// Calls `visit` with index and distance [m] of every particle within the kernel's support of a place, a ring's
-    /// image across the axis included.
-    pub fn for_each_particle(&self, at: &[f64; D], mut visit: impl FnMut(usize, f64)) {
-        self.for_each_near(self.cells, at, |j, _, r| visit(j, r));
-    }
-
-    /// As [`View::for_each_particle`], with the particle's place [m] between them.
-    pub fn for_each_particle_at(&self, at: &[f64; D], visit: impl FnMut(usize, [f64; D], f64)) {
+    /// Calls `visit` with index, place [m] and distance [m] of every particle within the kernel's support of a place, a
+    /// ring's image across the axis included.
+    pub fn for_each_particle(&self, at: &[f64; D], visit: impl FnMut(usize, [f64; D], f64)) {
         self.for_each_near(self.cells, at, visit);
     }
 

@@ -210,13 +210,14 @@ fn short() -> String {
     "the message ends within a field".to_owned()
 }
 
-/// A number; JSON has none for NaN and infinities.
+/// A number; JSON has none for NaN and infinities, which are text (replies of the bus spell them as docs/zenoh.md says).
 #[must_use]
 pub fn number(value: f64) -> Value {
     serde_json::Number::from_f64(value).map_or_else(|| format!("{value}").into(), Value::Number)
 }
 
-fn hex(bytes: &[u8]) -> String {
+/// Lower-case hexadecimal.
+pub(super) fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |mut hex, byte| {
         // Writing to a String does not fail.
         let _ = write!(hex, "{byte:02x}");

@@ -2,12 +2,12 @@
 
 use super::error::RecordError;
 use super::file::LogFile;
+use super::json::hex;
 use super::options::RecordOptions;
 use super::place::Place;
 use crate::component::{Component, Mode};
 use crate::wire::convert::nanoseconds;
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 /// Metadata "run" and "segment" and the attachments: first in the file, so that they survive a crash.
 pub(super) fn write_preamble(
@@ -60,12 +60,4 @@ pub(super) fn has_state(component: &Component) -> bool {
 
 pub(super) fn owned<const N: usize>(pairs: [(&str, String); N]) -> BTreeMap<String, String> {
     pairs.into_iter().map(|(k, v)| (k.to_owned(), v)).collect()
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut hex, byte| {
-        // Writing to a String does not fail.
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
 }

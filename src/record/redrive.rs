@@ -7,6 +7,7 @@
 
 use super::compare::{differ, different_figure, different_particle, disagree, same};
 use super::error::ReadError;
+use super::json::hex;
 use super::options::RecordOptions;
 use super::raw::{Ending, RawEntry, RawMessage, RawReader};
 use super::read::{Body, decode};
@@ -552,8 +553,4 @@ impl Run {
         }
         Ok(self.done)
     }
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -17,7 +17,7 @@ use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::messages::AppliedEvent;
 use crate::wire::{Moment, Pending, keys, picture};
 use std::collections::{BTreeMap, HashSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Records one component. Made by [`Recorder::create`], ended by [`Recorder::finish`].
 pub struct Recorder {
@@ -38,6 +38,8 @@ pub struct Recorder {
     snapshots: u64,
     trouble: Option<RecordError>,
     earlier: Earlier,
+    /// The file is closed already, under this name: no other could follow it.
+    ended: Option<Option<PathBuf>>,
     last: Last,
 }
 
@@ -133,6 +135,7 @@ impl Recorder {
             snapshots: 0,
             trouble: None,
             earlier: Earlier::default(),
+            ended: None,
             last: Last::default(),
         };
         recorder.remember(component);

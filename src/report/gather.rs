@@ -2,7 +2,8 @@
 //! the snapshots, so that only one cloud is in memory at a time.
 
 use super::ReportError;
-use super::pack::{Cloud, PACKED, Scale, high};
+use super::pack::{Cloud, PACKED, Scale};
+use super::standing::Standing;
 use crate::component::MassLedger;
 use crate::record::{Body, Ending, Entry, LogReader, Survey, Table};
 use crate::scene::{self, Scene};
@@ -23,14 +24,16 @@ type Frames = BTreeMap<String, [f64; 7]>;
 pub(super) struct Gathered {
     survey: Survey,
     table: Table,
-    stats: Vec<StepStats>,
+    standing: Standing,
+    /// Lines of figures in the log, those taken back among them: the account of mass holds on each.
+    lines_checked: usize,
+    mass_error: f64,
     lines: Vec<Value>,
     lines_left_out: usize,
     drawn: SceneUpdate,
     scene: Option<Scene>,
     scale: Scale,
     pub(super) snapshots: Vec<Value>,
-    pub(super) snapshots_in_log: usize,
 }
 
 impl Gathered {
@@ -38,38 +41,36 @@ impl Gathered {
         let mut gathered = Self {
             survey: Survey::of(log)?,
             table: Table::read(log, (f64::NEG_INFINITY, f64::INFINITY))?,
-            stats: Vec::new(),
+            standing: Standing::default(),
+            lines_checked: 0,
+            mass_error: 0.0,
             lines: Vec::new(),
             lines_left_out: 0,
             drawn: SceneUpdate::default(),
             scene: None,
-            scale: Scale {
-                lower: [f32::INFINITY; 3],
-                upper: [f32::NEG_INFINITY; 3],
-                speed: 0.0,
-                pressure: 0.0,
-                inertial: 0.0,
-            },
+            scale: Scale::default(),
             snapshots: Vec::new(),
-            snapshots_in_log: 0,
         };
-        let bytes = gathered.first_reading(log)?;
+        gathered.first_reading(log)?;
+        // Base64 makes four bytes of three.
+        let shots = gathered.standing.shots.iter();
+        let bytes: usize = shots.map(|shot| PACKED * shot.particles * 4 / 3).sum();
         let every = bytes.div_ceil(most_bytes.max(1)).max(1);
         gathered.second_reading(log, every)?;
         Ok(gathered)
     }
 
-    /// Everything but the particles themselves; gives the bytes that these would take.
-    fn first_reading(&mut self, log: &Path) -> Result<usize, ReportError> {
-        let mut bytes = 0;
+    /// Everything but the particles themselves.
+    fn first_reading(&mut self, log: &Path) -> Result<(), ReportError> {
         for entry in LogReader::open(log)? {
             match entry? {
                 Entry::Attachment { name, data, .. } if name == "scene.toml" => {
                     // Table::read refused what cannot be read.
                     self.scene = scene::parse("scene.toml", &String::from_utf8_lossy(&data)).ok();
                 }
-                Entry::Message { body, .. } => match body {
-                    Body::Stats(stats) => self.stats.push(stats),
+                Entry::Message { body, log_time, .. } => match body {
+                    Body::Stats(stats) => self.add_stats(stats),
+                    Body::Applied(applied) => self.standing.add_applied(log_time, &applied),
                     Body::Scene(update) => self.drawn = update,
                     Body::Log(_) if self.lines.len() >= MOST_LINES => self.lines_left_out += 1,
                     Body::Log(line) => {
@@ -81,32 +82,28 @@ impl Gathered {
                         }));
                     }
                     Body::Particles(cloud) => {
-                        self.snapshots_in_log += 1;
-                        let cloud = Cloud::of(&cloud);
-                        // Base64 makes four bytes of three.
-                        bytes += PACKED * cloud.len() * 4 / 3;
-                        self.extend_scale(cloud);
+                        self.standing.add_cloud(log_time, Cloud::of(&cloud));
                     }
                     _ => {}
                 },
                 _ => {}
             }
         }
+        for shot in &self.standing.shots {
+            self.scale.extend(&shot.scale);
+        }
         self.include_solids();
-        Ok(bytes)
+        Ok(())
     }
 
-    fn extend_scale(&mut self, mut cloud: Cloud) {
-        let scale = &mut self.scale;
-        for axis in 0..3 {
-            for &x in &cloud.position[axis] {
-                scale.lower[axis] = scale.lower[axis].min(x);
-                scale.upper[axis] = scale.upper[axis].max(x);
-            }
+    fn add_stats(&mut self, stats: StepStats) {
+        self.lines_checked += 1;
+        let error = ledger(&stats).error();
+        if self.mass_error == 0.0 && error != 0.0 {
+            // NaN, which is an error as well, would become null.
+            self.mass_error = if error.is_nan() { f64::MAX } else { error };
         }
-        scale.speed = scale.speed.max(high(&mut cloud.speed));
-        scale.pressure = scale.pressure.max(high(&mut cloud.pressure));
-        scale.inertial = scale.inertial.max(high(&mut cloud.inertial));
+        self.standing.stats.push(stats);
     }
 
     /// The picture has room for the corners of walls that are bounded, and a bit more.
@@ -142,8 +139,15 @@ impl Gathered {
         }
     }
 
+    /// Packs every so many of the snapshots that stand, and the last.
     fn second_reading(&mut self, log: &Path, every: usize) -> Result<(), ReportError> {
         let mut frames = Frames::new();
+        let last = self.snapshots_in_log().saturating_sub(1);
+        let shots = self.standing.shots.iter().enumerate();
+        let mut shown = shots
+            .filter(|(k, _)| k.is_multiple_of(every) || *k == last)
+            .map(|(_, shot)| shot.number)
+            .peekable();
         let mut number = 0;
         for entry in LogReader::open(log)? {
             match entry? {
@@ -158,19 +162,24 @@ impl Gathered {
                     log_time,
                     ..
                 } => {
-                    number += 1;
-                    if number % every == 1 || every == 1 || number == self.snapshots_in_log {
+                    if shown.next_if_eq(&number).is_some() {
                         let cloud = Cloud::of(&cloud);
                         self.snapshots.push(json!({
                             "time": log_time as f64 * 1e-9, "count": cloud.len(),
                             "frames": frames, "data": self.scale.pack(&cloud),
                         }));
                     }
+                    number += 1;
                 }
                 _ => {}
             }
         }
         Ok(())
+    }
+
+    /// Snapshots of the log that were not taken back.
+    pub(super) fn snapshots_in_log(&self) -> usize {
+        self.standing.shots.len()
     }
 
     pub(super) fn ending(&self) -> &Ending {
@@ -204,10 +213,9 @@ impl Gathered {
         let wall = survey.published().map(|(a, b)| (b - a) as f64 * 1e-9);
         let run = survey.metadata("run").cloned().unwrap_or_default();
         let deterministic = run.get("deterministic").is_some_and(|d| d == "true");
-        let ledgers = self.stats.iter().map(ledger);
-        let error = ledgers.map(|l| l.error()).find(|error| *error != 0.0);
         let mut bound_by: BTreeMap<&str, u64> = BTreeMap::new();
-        for stats in self.stats.iter().filter(|s| !s.bound_by.is_empty()) {
+        let all = self.standing.stats.iter();
+        for stats in all.filter(|s| !s.bound_by.is_empty()) {
             *bound_by.entry(&stats.bound_by).or_default() += 1;
         }
         json!({
@@ -222,9 +230,8 @@ impl Gathered {
             "columns": self.columns(),
             "stats": self.stats_columns(),
             "bound_by": bound_by,
-            // NaN, which is an error as well, would become null.
-            "mass_error": error.map_or(0.0, |e| if e.is_nan() { f64::MAX } else { e }),
-            "lines_checked": self.stats.len(),
+            "mass_error": self.mass_error,
+            "lines_checked": self.lines_checked,
             "lines": self.lines,
             "lines_left_out": self.lines_left_out,
             "channels": survey.channels.iter().filter(|(_, c)| c.messages > 0).map(|(topic, c)| {
@@ -246,7 +253,7 @@ impl Gathered {
     }
 
     fn view_note(&self) -> String {
-        let (shown, all) = (self.snapshots.len(), self.snapshots_in_log);
+        let (shown, all) = (self.snapshots.len(), self.snapshots_in_log());
         let mut note = match (shown, all) {
             (_, 0) => "The log holds no particle snapshots (log.particles_every).".to_owned(),
             (a, b) if a == b => format!("{a} snapshots."),
@@ -281,7 +288,7 @@ impl Gathered {
     fn stats_columns(&self) -> Value {
         let mut columns = Map::new();
         let mut add = |name: &str, of: &dyn Fn(&StepStats) -> f64| {
-            let values: Vec<f64> = self.shown(&self.stats).map(of).collect();
+            let values: Vec<f64> = self.shown(&self.standing.stats).map(of).collect();
             columns.insert(name.to_owned(), values.into());
         };
         add("substeps", &|s| f64::from(s.substeps));

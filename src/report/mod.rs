@@ -1,11 +1,15 @@
 //! A log as one page for a browser: gauges and inputs over time, account of mass, figures of the solver, validity, and
 //! the particles with a time slider. The page holds everything and asks no network.
 //!
-//! Data flow: [`record`](crate::record) reads the log, `gather` keeps what the page shows, `pack` makes snapshots small,
-//! and this file puts data, style and scripts (`page/`) into one text. Knows no terminal and runs nothing.
+//! Data flow: [`record`](crate::record) reads the log, `gather` keeps what the page shows, `standing` leaves out
+//! what was taken back, `pack` makes snapshots small, and this file puts data, style and scripts (`page/`) into one text.
+//! Knows no terminal and runs nothing.
 
 mod gather;
 mod pack;
+mod standing;
+#[cfg(test)]
+mod tests;
 
 use crate::record::{Ending, ReadError, TableError};
 use gather::Gathered;
@@ -18,7 +22,7 @@ pub struct Report {
     pub html: String,
     /// Particle snapshots in it.
     pub snapshots: usize,
-    /// Particle snapshots in the log.
+    /// Particle snapshots in the log but for those of steps that were taken back.
     pub snapshots_in_log: usize,
     /// Communication points in it.
     pub rows: usize,
@@ -59,7 +63,7 @@ pub fn report(log: &Path, most_bytes: usize) -> Result<Report, ReportError> {
     Ok(Report {
         html,
         snapshots: gathered.snapshots.len(),
-        snapshots_in_log: gathered.snapshots_in_log,
+        snapshots_in_log: gathered.snapshots_in_log(),
         rows: gathered.rows(),
         ending: gathered.ending().clone(),
     })

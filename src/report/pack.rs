@@ -61,7 +61,46 @@ pub(super) struct Scale {
     pub(super) inertial: f32,
 }
 
+impl Default for Scale {
+    /// Of no particle.
+    fn default() -> Self {
+        Self {
+            lower: [f32::INFINITY; 3],
+            upper: [f32::NEG_INFINITY; 3],
+            speed: 0.0,
+            pressure: 0.0,
+            inertial: 0.0,
+        }
+    }
+}
+
 impl Scale {
+    /// What a cloud needs.
+    pub(super) fn of(mut cloud: Cloud) -> Self {
+        let mut scale = Self::default();
+        for axis in 0..3 {
+            for &x in &cloud.position[axis] {
+                scale.lower[axis] = scale.lower[axis].min(x);
+                scale.upper[axis] = scale.upper[axis].max(x);
+            }
+        }
+        scale.speed = scale.speed.max(high(&mut cloud.speed));
+        scale.pressure = scale.pressure.max(high(&mut cloud.pressure));
+        scale.inertial = scale.inertial.max(high(&mut cloud.inertial));
+        scale
+    }
+
+    /// Has room for `other`, too.
+    pub(super) fn extend(&mut self, other: &Self) {
+        for axis in 0..3 {
+            self.lower[axis] = self.lower[axis].min(other.lower[axis]);
+            self.upper[axis] = self.upper[axis].max(other.upper[axis]);
+        }
+        self.speed = self.speed.max(other.speed);
+        self.pressure = self.pressure.max(other.pressure);
+        self.inertial = self.inertial.max(other.inertial);
+    }
+
     /// Base64 of a cloud: columns of 16-bit little-endian numbers, then materials, then asleep.
     pub(super) fn pack(&self, cloud: &Cloud) -> String {
         let mut bytes = Vec::with_capacity(PACKED * cloud.len());
@@ -92,7 +131,7 @@ impl Scale {
 }
 
 /// The value that all but a hundredth of the values are below: single fast grains do not take the colours of the rest.
-pub(super) fn high(values: &mut [f32]) -> f32 {
+fn high(values: &mut [f32]) -> f32 {
     if values.is_empty() {
         return 0.0;
     }

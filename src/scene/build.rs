@@ -84,7 +84,7 @@ pub fn geometry(scene: &Scene) -> Geometry {
 
 fn periodic<const D: usize>(scene: &Scene) -> Result<Periodic<D>, String> {
     let domain = &scene.domain;
-    // Support 4 h and the lists' skin, on both sides of a particle.
+    // Support 2 h and the lists' skin of 0.3 h, on both sides of a particle.
     let least = 2.0 * (2.0 + 0.3) * scene.numerics.spacing * scene.numerics.smoothing_ratio;
     let mut length = [0.0; D];
     for (k, length) in length.iter_mut().enumerate() {

@@ -55,7 +55,7 @@ pub struct Scene {
     pub materials: Vec<NamedMaterial>,
     /// What is there at the start.
     pub bodies: Vec<Body>,
-    /// Fixed walls (which may move tangentially, like a belt).
+    /// Walls: they stand, slide along themselves like a belt, or move as a whole.
     pub walls: Vec<Wall>,
     /// Moving walls whose opening is an input.
     pub gates: Vec<Gate>,
@@ -157,7 +157,7 @@ pub struct Wall {
     pub name: String,
     /// Where it is.
     pub geometry: WallGeometry,
-    /// No slip or free slip.
+    /// No slip, free slip or Coulomb friction.
     pub slip: Slip,
     /// Whether the wall moves as a whole; otherwise its surface slides along itself and the geometry stays.
     pub rigid: bool,
@@ -283,7 +283,7 @@ pub struct Gauge {
     pub material: Option<usize>,
 }
 
-/// What a gauge measures; definitions in docs/theory.md.
+/// What a gauge measures; definitions in docs/gauges.md.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GaugeKind {
     /// Depth along a line: distance from `foot` to the highest point along `up` where the Shepard sum is 0.5 [m].

@@ -42,6 +42,8 @@ pub(super) struct Ride<'a> {
     internal_step: f64,
     /// Each communication step is done in so many; inputs change at the first of them only.
     pieces: usize,
+    /// Internal steps that are allowed.
+    most_steps: u64,
     told: Vec<f64>,
 }
 
@@ -75,6 +77,7 @@ impl<'a> Ride<'a> {
             most_cpu,
             internal_step,
             pieces: 1,
+            most_steps: case.drive.most_steps,
             told: Vec::new(),
         })
     }
@@ -85,6 +88,8 @@ impl<'a> Ride<'a> {
         let longest = self.case.drive.steps.iter().copied().fold(0.0, f64::max);
         let pieces = (longest / self.internal_step).ceil();
         self.pieces = pieces.clamp(1.0, MOST_PIECES) as usize;
+        // Each piece ends with an internal step that is cut short.
+        self.most_steps = self.most_steps.saturating_mul(2);
         self
     }
 
@@ -114,7 +119,7 @@ impl<'a> Ride<'a> {
         }
         let steps = &self.case.drive.steps;
         let asked = steps[self.index / self.pieces % steps.len()] / self.pieces as f64;
-        let left = self.case.drive.most_steps.saturating_sub(self.internal);
+        let left = self.most_steps.saturating_sub(self.internal);
         // Watched only where it may have to be cut: plain steps are what most users do.
         let watched = asked > self.internal_step * left as f64 / 3.0;
         Some(self.step(asked, watched.then_some(left)))
@@ -160,7 +165,7 @@ impl<'a> Ride<'a> {
         let report = report?;
         self.index += 1;
         self.internal += u64::from(report.substeps);
-        self.over |= self.internal >= self.case.drive.most_steps || self.is_hung();
+        self.over |= self.internal >= self.most_steps || self.is_hung();
         Ok(Done { asked, cut, report })
     }
 

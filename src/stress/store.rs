@@ -1,7 +1,7 @@
 //! What is kept of a campaign: every scene that was tried, one line each, and their summary.
 
 use std::collections::BTreeMap;
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -10,6 +10,7 @@ use serde_json::json;
 use super::{Campaign, Error, Figures, Tried, generate};
 use crate::bench::Machine;
 use crate::validate::SOURCES;
+use crate::whole_file;
 
 /// What was tried so far, in a file to which each scene is added: a campaign goes on from it.
 pub struct Journal {
@@ -39,7 +40,12 @@ impl Journal {
             "count": campaign.count, "kind": campaign.kind, "cpu": campaign.bounds.cpu,
         })
         .to_string();
-        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        let text = match std::fs::read(&path) {
+            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
+            Err(error) if error.kind() == ErrorKind::NotFound => String::new(),
+            // Not begun anew: what cannot be read now may be days of work.
+            Err(error) => return Err(failed("read")(error)),
+        };
         let mut lines = text.lines();
         let known: Vec<Tried> = if lines.next() == Some(&head) {
             // A line that was cut by a kill is tried again.
@@ -49,12 +55,13 @@ impl Journal {
         } else {
             Vec::new()
         };
-        let mut file = std::fs::File::create(&path).map_err(failed("write"))?;
         let mut text = head + "\n";
         for tried in &known {
-            text += &line(tried);
+            text += &line(&path, tried)?;
         }
-        file.write_all(text.as_bytes()).map_err(failed("write"))?;
+        whole_file::replace(&path, text.as_bytes()).map_err(failed("write"))?;
+        let added_to = std::fs::File::options().append(true).open(&path);
+        let file = added_to.map_err(failed("write"))?;
         Ok(Self { path, file, known })
     }
 
@@ -69,8 +76,9 @@ impl Journal {
     /// # Errors
     /// [`Error::File`].
     pub fn add(&mut self, tried: &Tried) -> Result<(), Error> {
+        let line = line(&self.path, tried)?;
         self.file
-            .write_all(line(tried).as_bytes())
+            .write_all(line.as_bytes())
             .map_err(|source| Error::File {
                 action: "write",
                 path: self.path.clone(),
@@ -79,9 +87,17 @@ impl Journal {
     }
 }
 
-fn line(tried: &Tried) -> String {
-    // Numbers and text always encode.
-    serde_json::to_string(tried).unwrap_or_default() + "\n"
+fn line(path: &Path, tried: &Tried) -> Result<String, Error> {
+    let line = serde_json::to_string(tried).map_err(|error| not_encoded(path, error))?;
+    Ok(line + "\n")
+}
+
+fn not_encoded(path: &Path, error: serde_json::Error) -> Error {
+    Error::File {
+        action: "encode",
+        path: path.to_path_buf(),
+        source: error.into(),
+    }
 }
 
 /// What became of the scenes of one kind.
@@ -227,9 +243,8 @@ impl StressRun {
 /// # Errors
 /// [`Error::File`].
 pub fn write<T: Serialize>(path: &Path, run: &T) -> Result<(), Error> {
-    // Numbers, flags and text always encode.
-    let text = serde_json::to_string_pretty(run).unwrap_or_default() + "\n";
-    write_text(path, &text)
+    let text = serde_json::to_string_pretty(run).map_err(|error| not_encoded(path, error))?;
+    write_text(path, &(text + "\n"))
 }
 
 /// Reads a kept run.
@@ -263,5 +278,41 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(failed("make the folder of"))?;
     }
-    std::fs::write(path, text).map_err(failed("write"))
+    whole_file::replace(path, text.as_bytes()).map_err(failed("write"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::Bounds;
+
+    #[test]
+    fn a_journal_with_a_line_cut_by_a_kill_is_gone_on_from() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let campaign = Campaign {
+            seed: 5,
+            count: 2,
+            kind: None,
+            jobs: 1,
+            bounds: Bounds::default(),
+        };
+        let tried = Tried {
+            kind: "illegal".to_owned(),
+            seed: 5,
+            failures: Vec::new(),
+            figures: Figures::default(),
+        };
+        let mut journal = Journal::open(folder.path(), &campaign).unwrap();
+        journal.add(&tried).unwrap();
+        drop(journal);
+        let path = folder.path().join("tried.jsonl");
+        let whole = std::fs::read(&path).unwrap();
+        // Cut within a letter.
+        let mut bytes = whole.clone();
+        bytes.extend(b"{\"kind\":\"\xc3");
+        std::fs::write(&path, bytes).unwrap();
+        let journal = Journal::open(folder.path(), &campaign).unwrap();
+        assert_eq!(journal.known(), [tried]);
+        assert_eq!(std::fs::read(&path).unwrap(), whole);
+    }
 }

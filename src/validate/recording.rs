@@ -120,11 +120,4 @@ impl Recording {
     pub fn last(&self, variable: &str) -> Option<f64> {
         self.series.get(variable)?.last()?.first().copied()
     }
-
-    /// The last snapshot not after a time [s], with a billionth of slack.
-    #[must_use]
-    pub fn snapshot_at(&self, time: f64) -> Option<&Snapshot> {
-        let slack = 1e-9 * time.abs().max(1.0);
-        self.snapshots.iter().rev().find(|s| s.time <= time + slack)
-    }
 }

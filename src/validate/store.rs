@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 use super::{Error, Member, Recording};
+use crate::whole_file;
 
 /// A folder of recordings.
 #[derive(Clone, Debug)]
@@ -123,9 +124,5 @@ pub(super) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(|e| failed("make folder", folder, e))?;
     }
-    let mut fresh = path.as_os_str().to_owned();
-    fresh.push(".new");
-    let fresh = PathBuf::from(fresh);
-    std::fs::write(&fresh, bytes).map_err(|e| failed("write", &fresh, e))?;
-    std::fs::rename(&fresh, path).map_err(|e| failed("write", path, e))
+    whole_file::replace(path, bytes).map_err(|e| failed("write", path, e))
 }

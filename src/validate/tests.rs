@@ -189,7 +189,6 @@ fn a_member_keeps_its_series_and_particles() {
     let times: Vec<f64> = first.snapshots.iter().map(|s| s.time).collect();
     assert_eq!(times, [0.0, 0.01]);
     assert_eq!(first.snapshots[1].position.len() as u64, first.particles);
-    assert_eq!(first.snapshot_at(0.015).unwrap().time, 0.01);
     assert!(first.steps >= 10);
 }
 

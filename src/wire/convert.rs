@@ -7,7 +7,6 @@ use super::foxglove::{
 use super::messages::{Gauge, MassLedger, StepStats, Validity};
 use crate::component::{self, Causality, Component, StepReport, ValueReference, VariableTable};
 use crate::scene::Wall;
-use crate::solver::StepBound;
 use nalgebra::{Unit, UnitQuaternion};
 use prost_types::Timestamp;
 
@@ -108,7 +107,7 @@ pub fn step_stats(component: &Component, report: Option<&StepReport>, sequence: 
         sequence,
         substeps: report.map_or(0, |r| r.substeps),
         smallest_step: report.map_or(0.0, |r| r.smallest_step),
-        bound_by: report.map_or("", |r| bound_name(r.bound_by)).to_owned(),
+        bound_by: report.map_or("", |r| r.bound_by.name()).to_owned(),
         iterations: report.map_or(0, |r| r.iterations),
         particles: figures.particles,
         step_size: figures.step_size,
@@ -123,15 +122,6 @@ pub fn step_stats(component: &Component, report: Option<&StepReport>, sequence: 
             outflow: ledger.outflow,
             present: ledger.present,
         }),
-    }
-}
-
-fn bound_name(bound: StepBound) -> &'static str {
-    match bound {
-        StepBound::Acoustic => "acoustic",
-        StepBound::Motion => "motion",
-        StepBound::Viscous => "viscous",
-        StepBound::Communication => "communication",
     }
 }
 

@@ -1,7 +1,7 @@
-//! What every adapter must do alike: behaviours as plain functions over a small driver trait.
+//! What adapters that call by reference must do alike: behaviours as plain functions over a small driver trait.
 //!
-//! The suite runs for `Component` itself (tests/it/contract.rs), for the bus protocol, and through the exported
-//! functions of the library (fmu/src/contract.rs takes these files by `#[path]`). An adapter brings a [`Driver`]
+//! The suite runs for `Component` itself (tests/it/contract.rs) and through the exported functions of the library
+//! (fmu/src/contract.rs takes these files by `#[path]`); the bus has tests of its own. An adapter brings a [`Driver`]
 //! and calls [`check_all`]. Adapters must not differ in a single bit: states and values are compared as such.
 
 mod parameters;

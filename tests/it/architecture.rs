@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Ranks of ARCHITECTURE.md. A module uses modules of lower rank, and of its own rank only itself.
-const RANKS: [(&str, u8); 21] = [
+const RANKS: [(&str, u8); 22] = [
     ("math", 0),
     ("units", 0),
     ("kernel", 1),
@@ -18,6 +18,7 @@ const RANKS: [(&str, u8); 21] = [
     ("scene", 5),
     ("component", 6),
     ("wire", 7),
+    ("whole_file", 7),
     ("fmi", 8),
     ("record", 8),
     ("bus", 8),

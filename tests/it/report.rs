@@ -126,6 +126,12 @@ fn snapshots_are_left_out_evenly_to_keep_a_page_small() {
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("is the log itself"), "{said}");
     assert_eq!(std::fs::read(&log).unwrap(), bytes);
+    // Nor where a run that goes on would put it.
+    let part = folder.path().join("on.mcap.part");
+    std::fs::write(&part, &bytes[..bytes.len() / 2]).unwrap();
+    let (code, said) = report(&part, &folder.path().join("on.mcap"));
+    assert_eq!(code, Some(2), "{said}");
+    assert!(!folder.path().join("on.mcap").exists());
     let (cut, page) = (
         folder.path().join("cut.mcap"),
         folder.path().join("cut.html"),

@@ -382,12 +382,16 @@ def test_the_c_library_logs_alike(tmp_path):
     library.initialize()
     run(library, last=3)
     assert lib.sandgate_step(handle, ctypes.c_double(-1.0), ctypes.c_double(H), None) == 3
+    # A state that nobody got is no state to come back to.
+    written = ctypes.c_size_t()
+    assert lib.sandgate_save(handle, (ctypes.c_uint8 * 1)(), ctypes.c_size_t(1), ctypes.byref(written)) != 0
     library.check(lib.sandgate_terminate(handle))
     library.free()
     assert "3 steps" in runs_again(path)
     found = messages(path)
     refused = [v for topic, v in found if topic == "@c/sandgate_step/reply" and v.status != "ok"]
     assert [v.status for v in refused] == ["range"]
+    assert not any(v.state for topic, v in found if topic == "out/applied")
     # One that cannot begin says so with a code of its own.
     library = Library(LIBRARY, PATH)
     library.check(lib.sandgate_set_text(library.handle, reference, str(path).encode()))

@@ -177,6 +177,13 @@ def test_clamped_set_points_are_told(version):
         p.fmu.step(0.0, H)
         assert p.fmu.get([GATE]) == [1.0]
         until(lambda: any(b"clamped to 1" in data for data in heard))
+        # What was taken holds: it is told once and not at each step.
+        for step in (1, 2):
+            p.fmu.step(step * H, H)
+        p.point(RATE, 1e9)
+        p.fmu.step(3 * H, H)
+        until(lambda: any(RATE.encode() in data for data in heard))
+        assert sum(GATE.encode() in data for data in heard) == 1
         subscriber.undeclare()
 
 

@@ -41,7 +41,7 @@ pub struct Beside {
     entrances: Entrances,
     threads: Vec<JoinHandle<()>>,
     epoch: u64,
-    /// The last set-point of each variable, until its owner sets it.
+    /// The last set-point of each variable, as it was taken (clamped, it may be), until its owner sets it.
     held: BTreeMap<ValueReference, SetPoint>,
 }
 
@@ -135,8 +135,8 @@ impl Beside {
             };
             self.shared.waiting_set_points.fetch_sub(1, Relaxed);
             match self.set(component, &point, owned, other) {
-                Ok(reference) => {
-                    self.held.insert(reference, point);
+                Ok((reference, values)) => {
+                    self.held.insert(reference, SetPoint { values, ..point });
                 }
                 Err(refusal) => self.refuse(component, &refusal, other),
             }
@@ -148,13 +148,14 @@ impl Beside {
         }
     }
 
+    /// Gives the variable and the values that it holds then.
     fn set(
         &mut self,
         component: &mut Component,
         point: &SetPoint,
         owned: &[ValueReference],
         other: &mut dyn Observer,
-    ) -> Result<ValueReference, Refusal> {
+    ) -> Result<(ValueReference, Vec<f64>), Refusal> {
         let inputs = [(point.variable.clone(), point.values.clone())];
         let assignment = Assignment::resolve(component.variables(), &inputs)?;
         let [reference] = assignment.references[..] else {
@@ -176,7 +177,7 @@ impl Beside {
             source,
         );
         self.tell_clamped(component, other);
-        Ok(reference)
+        Ok((reference, assignment.present(component)?.values))
     }
 
     /// Sets it again if the component holds another value, as after a roll-back.

@@ -1,13 +1,13 @@
 //! The callbacks. They run on Zenoh's threads: they check, hand on to bounded queues, and never wait.
 
-use super::failed;
-use super::replies::{Job, Waiting, ended};
+use super::replies::{Job, Waiting, busy, ended};
+use super::{WAITING_REPLIES, failed};
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
 use crate::bus::protocol::Fields;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::reply::Reply;
-use crate::bus::request::Request;
+use crate::bus::request::{LONGEST_TOLD, Request};
 use crate::bus::set_point::SetPoint;
 use crate::bus::status::{Shared, Status, lock};
 use crate::bus::stepping::{Exchange, Note, Task, WAITING_SET_POINTS, WAITING_TASKS};
@@ -132,7 +132,11 @@ impl Desk {
             no_parameters(&query)?;
             Request::parse(Verb::from_name(name)?, &bytes)
         });
-        let body = String::from_utf8_lossy(&bytes).into_owned();
+        let shown = match read {
+            Ok(_) => &bytes[..],
+            Err(_) => &bytes[..bytes.len().min(LONGEST_TOLD)],
+        };
+        let body = String::from_utf8_lossy(shown).into_owned();
         let exact = !key.contains(['*', '$']);
         let verb = key.rsplit('/').next().unwrap_or_default().to_owned();
         let mut waiting = Waiting {
@@ -176,15 +180,7 @@ impl Desk {
         };
         let (refusal, task) = match self.tasks.try_send(task) {
             Ok(()) => return,
-            Err(TrySendError::Full(task)) => (
-                Refusal::new(
-                    Code::Busy,
-                    format!(
-                        "{WAITING_TASKS} tasks wait already; nothing happened; send it again later"
-                    ),
-                ),
-                task,
-            ),
+            Err(TrySendError::Full(task)) => (busy(WAITING_TASKS, "tasks"), task),
             Err(TrySendError::Disconnected(task)) => (ended(), task),
         };
         if let Task::Call { request, asked, .. } = task {
@@ -251,8 +247,12 @@ impl Desk {
             shared: self.shared.clone(),
             jobs: self.jobs.clone(),
         };
-        // If the queue is full or gone, the job is dropped here, which answers.
-        let _ = self.jobs.try_send(Job::LastValues(waiting));
+        // If the queue is gone, the job is dropped here, which answers.
+        if let Err(TrySendError::Full(Job::LastValues(waiting))) =
+            self.jobs.try_send(Job::LastValues(waiting))
+        {
+            waiting.refuse(&busy(WAITING_REPLIES, "replies"));
+        }
     }
 }
 

@@ -17,6 +17,12 @@ pub(super) fn ended() -> Refusal {
     Refusal::new(Code::State, "the server ended before this was carried out")
 }
 
+/// What is said to those for whom a queue has no room.
+pub(super) fn busy(waiting: usize, what: &str) -> Refusal {
+    let message = format!("{waiting} {what} wait already; nothing happened; send it again later");
+    Refusal::new(Code::Busy, message)
+}
+
 /// Something for the thread that sends replies.
 pub(super) enum Job {
     Reply(Waiting, Reply),
@@ -45,6 +51,12 @@ impl Waiting {
                 }
             }
         }
+    }
+
+    /// From here, whatever the replying thread does.
+    pub(super) fn refuse(self, refusal: &Refusal) {
+        let reply = Reply::refusal(&self.req, refusal, &self.shared.status());
+        self.send(&reply);
     }
 
     /// Over the network.

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::cli::CliError;
+use crate::whole_file;
 
 /// What marks a folder as made by `sandgate run`, in `summary.json`.
 pub(super) const MADE_BY: &str = "sandgate run";
@@ -135,15 +136,13 @@ impl Folder {
     /// # Errors
     /// [`CliError::File`].
     pub(super) fn replace(&self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
-        let (fresh, path) = (self.file(&format!("{name}.part")), self.file(name));
-        std::fs::write(&fresh, bytes)
-            .and_then(|()| std::fs::rename(&fresh, &path))
-            .map_err(|source| CliError::File {
-                action: "write",
-                path,
-                source,
-                remedy: "make room or choose another folder with --out",
-            })
+        let path = self.file(name);
+        whole_file::replace(&path, bytes).map_err(|source| CliError::File {
+            action: "write",
+            path,
+            source,
+            remedy: "make room or choose another folder with --out",
+        })
     }
 }
 
@@ -155,8 +154,9 @@ fn numbered(name: &str) -> String {
 /// Files that a run makes; nothing else in a folder is ever touched.
 fn is_ours(name: &str) -> bool {
     let whole = name.strip_suffix(".part").unwrap_or(name);
+    let replaced = name.strip_suffix(whole_file::UNFINISHED);
     matches!(
-        whole,
+        replaced.unwrap_or(whole),
         "summary.json" | "gauges.csv" | "gauges.svg" | "checkpoint.state"
     ) || is_log(whole)
 }
@@ -229,6 +229,8 @@ mod tests {
             "run.mcap.part",
             "run-2.mcap",
             "run-0-0000.mcap",
+            "gauges.csv.part",
+            "checkpoint.state.new",
             "run-3-12345.mcap.part",
             "run-2-1-0003.mcap",
         ] {
@@ -243,6 +245,7 @@ mod tests {
             "run-.mcap",
             "run--0001.mcap",
             "run.mcap.recovering",
+            "run.mcap.new",
             "run_old.mcap",
             "prerun.mcap",
         ] {

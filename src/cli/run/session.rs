@@ -246,7 +246,7 @@ impl Session {
         *self
             .part
             .bound_by
-            .entry(summary::bound_name(report.bound_by))
+            .entry(report.bound_by.name())
             .or_default() += 1;
     }
 

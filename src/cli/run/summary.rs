@@ -7,16 +7,12 @@ use super::notes::notes;
 use super::session::Session;
 use crate::cli::CliError;
 use crate::component::{Causality, ValueKind};
+use crate::record::number;
 use crate::solver::StepBound;
 
 /// Name of a step bound in files and tables.
 pub(in crate::cli) fn bound_name(bound: StepBound) -> &'static str {
-    match bound {
-        StepBound::Acoustic => "acoustic",
-        StepBound::Motion => "motion",
-        StepBound::Viscous => "viscous",
-        StepBound::Communication => "communication",
-    }
+    bound.name()
 }
 
 /// The text of `summary.json`. SI units; a value that is no finite number is written as text.
@@ -232,12 +228,6 @@ fn short(value: f64) -> String {
     } else {
         text
     }
-}
-
-/// A JSON number, or text for what JSON cannot hold (serde_json would write null).
-fn number(value: f64) -> Value {
-    serde_json::Number::from_f64(value)
-        .map_or_else(|| Value::String(value.to_string()), Value::Number)
 }
 
 /// Lower-case hexadecimal.

@@ -2,7 +2,7 @@
 
 use super::{Earlier, Recorder};
 use crate::component::Component;
-use crate::record::error::RecordError;
+use crate::record::error::{Failure, RecordError};
 use crate::record::options::{Finished, RecordOptions};
 use crate::record::place::Place;
 use crate::record::preamble::owned;
@@ -25,7 +25,7 @@ impl Recorder {
         let Some(place) = self.place.as_ref().filter(|_| late || large) else {
             return Ok(());
         };
-        if self.file.failure().is_some() {
+        if self.file.failure().is_some() || self.ended.is_some() {
             return Ok(());
         }
         match self.follow(place.next(), component, "rotated") {
@@ -34,7 +34,10 @@ impl Recorder {
                 following.snapshots = self.snapshots;
                 self.go_on(following, |before| before.finish(component, "rotated"))
             }
-            Err(error) => self.stay(error),
+            Err(error) => {
+                let state = self.whereabouts(component);
+                self.stop(error, state, "rotated")
+            }
         }
     }
 
@@ -68,12 +71,26 @@ impl Recorder {
         }
     }
 
-    /// No file can follow: a log that is not required ends here.
-    fn stay(&mut self, error: RecordError) -> Result<(), RecordError> {
+    /// No file can follow: this one ends as if one did, and the log with it. The disk may be fine, so that nothing of
+    /// it is lost.
+    fn stop(
+        &mut self,
+        error: RecordError,
+        state: BTreeMap<String, String>,
+        reason: &str,
+    ) -> Result<(), RecordError> {
+        if self.ended.is_none() {
+            let ended = self.end_file(state, reason);
+            self.keep(ended);
+        }
+        self.earlier.failure.get_or_insert_with(|| Failure {
+            time: self.last.time,
+            cause: error.to_string(),
+            file: None,
+        });
         if self.options.required {
             return Err(error);
         }
-        self.file.give_up(&error.to_string());
         Ok(())
     }
 
@@ -115,7 +132,7 @@ impl Recorder {
         };
         match self.follow(place.jumped(), component, reason) {
             Ok(following) => self.go_on(following, |before| before.close(BTreeMap::new(), reason)),
-            Err(error) => self.stay(error),
+            Err(error) => self.stop(error, BTreeMap::new(), reason),
         }
     }
 
@@ -126,15 +143,21 @@ impl Recorder {
     /// [`RecordError::Required`] if the log is required and not whole, [`RecordError::Rename`]; what
     /// [`Recorder::take_trouble`] would give.
     pub fn finish(mut self, component: &Component, reason: &str) -> Result<Finished, RecordError> {
+        let state = self.whereabouts(component);
+        let trouble = self.trouble.take();
+        let finished = self.close(state, reason)?;
+        trouble.map_or(Ok(finished), Err)
+    }
+
+    /// Where the component is as its file ends.
+    fn whereabouts(&mut self, component: &Component) -> BTreeMap<String, String> {
         self.remember(component);
         let mode = ("mode".to_owned(), format!("{:?}", component.mode()));
         let mut state = BTreeMap::from([mode]);
         if !component.step_failed() {
             state.insert("state_hash".to_owned(), component.state_hash());
         }
-        let trouble = self.trouble.take();
-        let finished = self.close(state, reason)?;
-        trouble.map_or(Ok(finished), Err)
+        state
     }
 
     /// Ends the file of a component that has been reset, or gone to a state that is not initialised: it does not tell
@@ -174,6 +197,28 @@ impl Recorder {
         state: BTreeMap<String, String>,
         reason: &str,
     ) -> Result<Finished, RecordError> {
+        if self.ended.is_none() {
+            self.end_file(state, reason)?;
+        }
+        let failure = self.failure();
+        if let (Some(failure), true) = (&failure, self.options.required) {
+            return Err(RecordError::Required(failure.clone()));
+        }
+        let counts = self.file.counts();
+        Ok(Finished {
+            path: self.ended.flatten(),
+            messages: counts.written,
+            dropped: self.earlier.dropped + counts.dropped,
+            failure,
+        })
+    }
+
+    /// Writes the end and gives the file its name; what comes later is dropped.
+    fn end_file(
+        &mut self,
+        state: BTreeMap<String, String>,
+        reason: &str,
+    ) -> Result<(), RecordError> {
         let last = self.last;
         if !self.pending.is_empty() {
             self.leave_pending();
@@ -189,21 +234,13 @@ impl Recorder {
         ]);
         end.extend(state);
         self.file.metadata("end", end);
-        let (counts, failure) = self.file.finish();
-        let first = self.earlier.failure.or_else(|| failure.clone());
-        if let (Some(first), true) = (&first, self.options.required) {
-            return Err(RecordError::Required(first.clone()));
+        let (_, failure) = self.file.finish();
+        // A required log that is not whole keeps the name that says so.
+        let lacks = failure.is_some() || self.options.required && self.earlier.failure.is_some();
+        self.ended = Some(self.place.as_ref().map(Place::part));
+        if let (Some(place), false) = (&self.place, lacks) {
+            self.ended = Some(Some(place.rename()?));
         }
-        let path = match (&self.place, &failure) {
-            (Some(place), None) => Some(place.rename()?),
-            (Some(place), Some(_)) => Some(place.part()),
-            (None, _) => None,
-        };
-        Ok(Finished {
-            path,
-            messages: counts.written,
-            dropped: self.earlier.dropped + counts.dropped,
-            failure: first,
-        })
+        Ok(())
     }
 }

@@ -40,6 +40,7 @@ fn a_reset_sets_fixed_parameters_all_or_none() {
     let mut bench = Bench::new();
     let particles = bench.ok("get", r#"{"outputs":["solver.particles"]}"#)["outputs"].clone();
     bench.ok("step", r#"{"req":"1","inputs":{"gate.main.opening":1}}"#);
+    bench.ok("set", r#"{"req":"0","inputs":{"solver.threads":2}}"#);
     let before = bench.hash();
     bench.refused(
         "set",
@@ -57,6 +58,9 @@ fn a_reset_sets_fixed_parameters_all_or_none() {
         let body = format!(r#"{{"req":"{req}","inputs":{inputs}}}"#);
         bench.refused("reset", &body, "range", "solver.resolution_scale");
         assert_eq!(bench.hash(), before);
+        // What no saved state holds stays as well.
+        let threads = bench.ok("get", r#"{"outputs":["solver.threads"]}"#);
+        assert_eq!(threads["outputs"]["solver.threads"], 2);
     }
     let mut listener = Listener::default();
     let body = r#"{"req":"5","client":"b","inputs":{"solver.resolution_scale":1.25,"gate.main.opening":0.5}}"#;
@@ -156,8 +160,9 @@ fn an_observer_hears_what_happens_in_its_order() {
 }
 
 #[test]
-fn a_panic_becomes_a_reply_and_a_reset_heals() {
+fn a_panic_becomes_a_reply_and_a_reset_or_a_saved_state_heals() {
     let mut bench = Bench::new();
+    let saved = bench.ok("save", "")["state"].clone();
     let mut listener = Listener {
         panic_on_step: true,
         ..Listener::default()
@@ -180,4 +185,9 @@ fn a_panic_becomes_a_reply_and_a_reset_heals() {
     assert_eq!(bench.ok("status", "")["ok"], true);
     bench.ok("reset", r#"{"req":"3"}"#);
     assert_eq!(bench.ok("step", r#"{"req":"4"}"#)["step"], 1);
+
+    let request = Request::parse(Verb::Step, br#"{"req":"5"}"#).unwrap();
+    assert_eq!(bench.handle(&request, &mut listener).status(), "internal");
+    bench.ok("restore", &format!(r#"{{"req":"6","state":{saved}}}"#));
+    assert_eq!(bench.ok("step", r#"{"req":"7"}"#)["step"], 1);
 }

@@ -1,0 +1,69 @@
+//! Pages of logs made on the spot.
+
+use super::gather::Gathered;
+use crate::component::{Component, saved_checksum};
+use crate::record::{RecordOptions, Recorder};
+use crate::scene;
+
+#[test]
+fn what_an_importer_took_back_is_on_no_curve_and_in_no_picture() {
+    let text = include_str!("../../tests/scenes/small_silo.toml");
+    let scene = scene::parse("small_silo.toml", text).unwrap();
+    let folder = temp_dir::TempDir::new().unwrap();
+    let log = folder.path().join("run.mcap");
+    let mut component = Component::new(&scene).unwrap();
+    let options = RecordOptions {
+        particles_every: 0.005,
+        ..RecordOptions::of(&component)
+    };
+    let mut recorder = Recorder::create(&log, &component, options).unwrap();
+    component.initialize(0.0, None).unwrap();
+    recorder
+        .record_initialization(&component, 0.0, None, "test")
+        .unwrap();
+    let step = |component: &mut Component, recorder: &mut Recorder| {
+        let t = component.time();
+        let report = component.do_step(t, 0.005).unwrap();
+        recorder
+            .record_step(component, &report, t, 0.005, "test")
+            .unwrap();
+    };
+    step(&mut component, &mut recorder);
+    let state = component.save().unwrap();
+    let sum = saved_checksum(&state).unwrap();
+    recorder.record_save(&component, &sum, "test").unwrap();
+    for _ in 0..3 {
+        step(&mut component, &mut recorder);
+    }
+    component.restore(&state).unwrap();
+    recorder.record_restore(&component, &sum, "test").unwrap();
+    for _ in 0..2 {
+        step(&mut component, &mut recorder);
+    }
+    recorder.finish(&component, "finished").unwrap();
+
+    let gathered = Gathered::read(&log, 1_000_000).unwrap();
+    let data = gathered.json();
+    let numbers = |value: &serde_json::Value| -> Vec<f64> {
+        let list = value.as_array().unwrap().iter();
+        list.map(|v| v.as_f64().unwrap()).collect()
+    };
+    let times = numbers(&data["time"]);
+    assert_eq!(times.len(), 4, "{times:?}");
+    // The scripts find figures by the number of the row.
+    for (name, column) in data["stats"].as_object().unwrap() {
+        assert_eq!(column.as_array().unwrap().len(), times.len(), "{name}");
+    }
+    let substeps = numbers(&data["stats"]["total_substeps"]);
+    assert_eq!(substeps.last().copied(), Some(component.steps() as f64));
+    // The player looks for the snapshot of a time; its times are rounded to nanoseconds.
+    let shots = data["snapshots"].as_array().unwrap().iter();
+    let shots: Vec<f64> = shots.map(|s| s["time"].as_f64().unwrap()).collect();
+    assert_eq!(shots.len(), times.len(), "{shots:?}");
+    for (shot, time) in shots.iter().zip(&times) {
+        assert!((shot - time).abs() < 1e-9, "{shots:?} for {times:?}");
+    }
+    // The start, one, three, the state again and two more: all are lines of the log.
+    assert_eq!(data["lines_checked"], 8);
+    assert_eq!(data["mass_error"], 0.0);
+}
