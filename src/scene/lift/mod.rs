@@ -8,6 +8,7 @@ mod circle;
 mod clearance;
 mod devices;
 mod domain;
+mod faces;
 mod friction;
 mod gauges;
 mod geometry;
@@ -87,9 +88,11 @@ struct Lift<'r> {
     filled: Vec<(Place, Region)>,
     /// Outflows lifted so far.
     drains: Vec<(Place, Region)>,
-    /// Plates of gates, where they cover their gap at the start.
+    /// Plates of planar gates, where they cover their gap at the start.
     plates: Vec<(Place, Region)>,
     /// Walls, as far as bodies must keep clear of them.
+    /// The same in space: places within the plate.
+    space_plates: Vec<(Place, Vec<Point>)>,
     solids: Vec<(Place, walls::Solid)>,
     /// Heights along "up" of walls and gates [m].
     heights: Vec<f64>,
@@ -116,6 +119,7 @@ impl<'r> Lift<'r> {
             drains: Vec::new(),
             plates: Vec::new(),
             solids: Vec::new(),
+            space_plates: Vec::new(),
             heights: Vec::new(),
         };
         lift.domain = lift.domain();

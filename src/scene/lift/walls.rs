@@ -1,5 +1,6 @@
 //! Walls and gates.
 
+use super::faces::plate_places;
 use super::geometry::Region;
 use super::{Lift, length, minus, normalized};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
@@ -231,7 +232,10 @@ impl Lift<'_> {
             start: raw.start.as_ref()?.value.0,
             slip: slip?,
         };
-        if let (true, Some(plate)) = (self.planar(), plate(&gate)) {
+        if !self.planar() {
+            let places = plate_places(&gate, spacing);
+            self.space_plates.push((entry.place.clone(), places));
+        } else if let Some(plate) = plate(&gate) {
             self.plates.push((entry.place.clone(), plate));
         }
         Some(gate)
