@@ -17,6 +17,7 @@ mod motion;
 mod numerics;
 mod paper_a;
 mod paper_b;
+mod pressures;
 mod profile;
 mod run;
 mod scheme;
