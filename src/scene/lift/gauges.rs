@@ -178,7 +178,11 @@ impl Lift<'_> {
                 &direction_at.place,
                 "a direction parallel to up",
                 "a direction along the bed",
-                "write for example [1, 0]",
+                if self.planar() {
+                    "write for example [1, 0]"
+                } else {
+                    "write for example [1, 0, 0]"
+                },
             );
             return None;
         }

@@ -91,9 +91,9 @@ struct Lift<'r> {
     drains: Vec<(Place, Region)>,
     /// Plates of planar gates, where they cover their gap at the start.
     plates: Vec<(Place, Region)>,
-    /// Walls, as far as bodies must keep clear of them.
     /// The same in space: places within the plate.
     space_plates: Vec<(Place, Vec<Point>)>,
+    /// Walls, as far as bodies must keep clear of them.
     solids: Vec<(Place, walls::Solid)>,
     /// Heights along "up" of walls and gates [m].
     heights: Vec<f64>,
@@ -119,8 +119,8 @@ impl<'r> Lift<'r> {
             filled: Vec::new(),
             drains: Vec::new(),
             plates: Vec::new(),
-            solids: Vec::new(),
             space_plates: Vec::new(),
+            solids: Vec::new(),
             heights: Vec::new(),
         };
         lift.domain = lift.domain();
@@ -238,7 +238,11 @@ impl<'r> Lift<'r> {
                 &at.place,
                 "a vector of length 0",
                 "a direction: any vector that is not 0",
-                "write for example [0, 1]",
+                if self.planar() {
+                    "write for example [0, 1]"
+                } else {
+                    "write for example [0, 0, 1]"
+                },
             );
         }
         unit
