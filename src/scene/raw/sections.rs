@@ -327,7 +327,7 @@ table! {
 }
 
 table! {
-    /// A source: rows of particles enter through the face from `from` to `to`, on its left side, at a set velocity.
+    /// A source: rows of particles enter through the face from `from` to `to`, on its left side, at a set velocity. Rows come in only where a spacing before the face is free: it must be above the surface or in free room, since a source under material is blocked.
     RawInflow {
         /// Name of the material that enters.
         required material: Text;
