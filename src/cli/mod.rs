@@ -18,6 +18,7 @@ mod fmu;
 mod info;
 mod log;
 mod quantity;
+mod remarks;
 mod report;
 mod run;
 mod schema;

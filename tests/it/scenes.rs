@@ -593,7 +593,11 @@ until = 1
     let said = scene::parse("gate.toml", &planar).unwrap_err().to_string();
     assert!(said.contains("on the left of a gate's way"), "{said}");
     let gate = "from = [0.3, 0, 0.1]\nto = [0.3, 0.2, 0.1]\nspan = [0, 0, -0.1]";
+    let said = scene::parse("gate.toml", &scene(3, ", 0", ", 0.1", gate));
+    let said = said.unwrap_err().to_string();
+    assert!(said.contains("the plate of gates.front"), "{said}");
+    assert!(said.contains("the side of span x (to - from)"), "{said}");
+    let gate = "from = [0.3, 0, 0]\nto = [0.3, 0.2, 0]\nspan = [0, 0, 0.1]";
     let space = scene::parse("gate.toml", &scene(3, ", 0", ", 0.1", gate)).unwrap();
-    let said = scene::build::<3>(&space).unwrap_err().to_string();
-    assert!(said.contains("inside gate front, whose"), "{said}");
+    scene::build::<3>(&space).unwrap();
 }

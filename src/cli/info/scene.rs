@@ -1,5 +1,6 @@
 //! What a scene holds and what it leaves out, for people.
 
+use crate::cli::remarks::remarks;
 use crate::component::{Component, StaysAwake};
 use crate::material::{Law, Material, MuI};
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
@@ -40,6 +41,9 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
     }
     text.push_str(&format!("sleep      {}\n", sleep(scene, component)));
     text.push_str(&format!("left out   {}\n", left_out(scene).join("; ")));
+    for remark in remarks(scene) {
+        text.push_str(&format!("{remark}\n"));
+    }
     text
 }
 

@@ -43,6 +43,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let mut ending = Ending::Complete;
     if args.csv.is_some() || args.parquet.is_some() {
         let table = Table::read(&args.file, args.window.span())?;
+        if table.time.is_empty() {
+            let whole = Table::read(&args.file, (f64::NEG_INFINITY, f64::INFINITY))?;
+            let nothing = nothing_between(args.window.span(), &whole.time);
+            tell!("warning: {}: {nothing}", args.file.display());
+        }
         let shape = format!(
             "{} rows, {} columns",
             table.time.len(),
@@ -68,6 +73,22 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     }
     warn_unless_complete(&args.file, &ending);
     Ok(())
+}
+
+/// Why a table has no rows: times of the log's own rows [s] beside what was asked for.
+fn nothing_between((from, until): (f64, f64), time: &[f64]) -> String {
+    let asked = match (from.is_finite(), until.is_finite()) {
+        (true, true) => format!(" from {from} to {until} s"),
+        (true, false) => format!(" from {from} s on"),
+        (false, true) => format!(" to {until} s"),
+        (false, false) => String::new(),
+    };
+    let (Some(first), Some(last)) = (time.first(), time.last()) else {
+        return format!("no communication point{asked}: the log holds none; the table has no rows");
+    };
+    format!(
+        "no communication point{asked}: the log holds {first} to {last} s; the table has no rows. Give another --from or --until"
+    )
 }
 
 /// The shortest decimals that read back to the same bits; empty where the log says nothing.
@@ -114,5 +135,24 @@ pub(super) fn cannot_write(path: &Path, source: std::io::Error) -> CliError {
         path: path.to_owned(),
         source,
         remedy: "make room or choose another folder",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_table_is_told_with_the_times_that_the_log_holds() {
+        let infinite = f64::INFINITY;
+        let beyond = nothing_between((5.0, infinite), &[0.0, 0.5, 1.0]);
+        assert!(
+            beyond.contains("from 5 s on: the log holds 0 to 1 s"),
+            "{beyond}"
+        );
+        let between = nothing_between((0.1, 0.2), &[0.0, 0.5]);
+        assert!(between.contains("from 0.1 to 0.2 s:"), "{between}");
+        let none = nothing_between((-infinite, infinite), &[]);
+        assert!(none.contains("the log holds none"), "{none}");
     }
 }

@@ -1,14 +1,61 @@
 //! What a run's figures say of its scene, in words for people.
 
 use super::session::Session;
-use super::summary::extremes;
+use super::summary::{extremes, short};
+use crate::cli::remarks::remarks;
+use crate::scene::Inflow;
 
 /// A larger share of fast mass than that of single splashes is worth a word.
 const MUCH: f64 = 0.05;
 
+/// A smaller share of what an inflow was to let in is not worth one.
+const LITTLE: f64 = 0.01;
+
 /// Lines under the table of a run.
 pub(super) fn notes(session: &Session) -> Vec<String> {
-    fast(session).into_iter().collect()
+    let scene = session.component.scene();
+    let (time, spacing) = (&session.series.time[..], scene.numerics.spacing);
+    let values = |name: String| {
+        let column = session.series.columns.iter().find(|c| c.name == name)?;
+        Some(&column.values[..])
+    };
+    let blocked = scene.inflows.iter().filter_map(|inflow| {
+        let rate = values(format!("inflow.{}.rate", inflow.name))?;
+        let mass = values(format!("inflow.{}.mass", inflow.name))?;
+        blocked(inflow, spacing, time, rate, mass)
+    });
+    fast(session)
+        .into_iter()
+        .chain(blocked)
+        .chain(remarks(scene))
+        .collect()
+}
+
+/// An inflow let in less than was wanted, by more than the rows that are always on their way. `rate` is what held over the
+/// step that ended at each time, `mass` what had come in by then.
+fn blocked(
+    inflow: &Inflow,
+    spacing: f64,
+    time: &[f64],
+    rate: &[f64],
+    mass: &[f64],
+) -> Option<String> {
+    let steps = time.windows(2).zip(rate.iter().skip(1));
+    let wanted: f64 = steps.map(|(t, rate)| rate * (t[1] - t[0])).sum();
+    let admitted = mass.last()? - mass.first()?;
+    // The face passes max_rate at this speed, a row each spacing of the way; a slanting row is heavier, if by less than 2.
+    let speed = inflow.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let row = inflow.max_rate * spacing / speed;
+    let lost = wanted - admitted;
+    (lost > 2.0 * row && lost > LITTLE * wanted).then(|| {
+        format!(
+            "note: inflow.{} let in {} of {} kg wanted; it was blocked: its face needs a spacing of free room in front of it;\n  \
+             put it above the surface.",
+            inflow.name,
+            short(admitted),
+            short(wanted)
+        )
+    })
 }
 
 /// The sound speed is too low for what flowed.
@@ -25,4 +72,42 @@ fn fast(session: &Session) -> Option<String> {
             session.component.scene().numerics.sound_speed,
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 10 kg/s at most, 1 kg a row.
+    fn inflow() -> Inflow {
+        Inflow {
+            name: "in".to_owned(),
+            material: 0,
+            from: [0.0, 0.1, 0.0],
+            to: [0.0; 3],
+            span: [0.0; 3],
+            velocity: [0.1, 0.0, 0.0],
+            rate: 0.0,
+            max_rate: 10.0,
+        }
+    }
+
+    fn note(rate: &[f64], mass: &[f64]) -> Option<String> {
+        blocked(&inflow(), 0.01, &[0.0, 1.0, 3.0], rate, mass)
+    }
+
+    #[test]
+    fn an_inflow_that_was_blocked_is_told_with_what_was_wanted() {
+        // The rate of the first row held over no step.
+        let told = note(&[9.0, 3.0, 1.0], &[0.0, 0.0, 1.0]).unwrap();
+        assert!(told.contains("inflow.in let in 1 of 5 kg wanted"), "{told}");
+        assert!(told.contains("above the surface"), "{told}");
+    }
+
+    #[test]
+    fn an_inflow_that_is_a_row_behind_is_not_told() {
+        assert_eq!(note(&[3.0, 3.0, 1.0], &[0.0, 3.0, 4.0]), None);
+        assert_eq!(note(&[0.0, 0.0, 0.0], &[0.0, 0.0, 0.0]), None);
+        assert_eq!(note(&[0.0, 6.0, 0.0], &[7.0, 12.5, 12.5]), None);
+    }
 }

@@ -213,7 +213,7 @@ fn variable_rows(session: &Session) -> Vec<String> {
 }
 
 /// Six significant digits, for people; files hold all digits.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 {
         return "0".to_owned();

@@ -3,11 +3,14 @@
 use super::geometry::{Region, crossing_edges, cut_below, signed_area};
 use super::{Lift, dot};
 use crate::scene::raw::{At, Coordinates, Entry, Length, List, Place, RawBody, RawBox, RawColumn};
-use crate::scene::types::{Body, VelocityProfile};
+use crate::scene::types::{Body, Dimension, VelocityProfile};
 use crate::shape::Shape;
 
 /// Most corners of an outline: pairs of edges are compared.
 pub(super) const MOST_CORNERS: usize = 1000;
+
+const PLANAR_BOX: &str = "box = { lower = [0, 0], upper = [0.1, 0.1] }";
+const SPACE_BOX: &str = "box = { lower = [0, 0, 0], upper = [0.1, 0.1, 0.1] }";
 
 impl Lift<'_> {
     pub(super) fn bodies(&mut self) -> Vec<Body> {
@@ -50,12 +53,14 @@ impl Lift<'_> {
 
     /// Exactly one of box, polygon, circle and column, as the dimension allows.
     fn shape(&mut self, entry: &Entry<RawBody>, raw: &RawBody) -> Option<Shape> {
-        self.check_one_of(
-            &entry.place,
-            &raw.given,
-            &["box", "polygon", "circle", "column"],
-            "box = { lower = [0, 0], upper = [0.1, 0.1] }",
-        )?;
+        let (keys, example): (&[&str], _) = match self.dimension {
+            Dimension::Two => (&["box", "polygon", "circle"], PLANAR_BOX),
+            Dimension::Axisymmetric => (&["box", "polygon"], PLANAR_BOX),
+            Dimension::Three => (&["box", "column"], SPACE_BOX),
+        };
+        // One that the dimension does not have is told with what to use instead.
+        let all = ["box", "polygon", "circle", "column"];
+        self.check_one_of(&entry.place, &raw.given, &all, keys, example)?;
         if let Some(circle) = &raw.circle {
             let points = self.circle(circle)?;
             return Some(Shape::Polygon { points });
@@ -74,12 +79,13 @@ impl Lift<'_> {
         }
     }
 
-    /// Reports none or several of a set of keys that exclude each other.
+    /// Reports none or several of a set of keys that exclude each other; `fitting` are those that the dimension has.
     pub(super) fn check_one_of(
         &mut self,
         table: &Place,
         given: &[&str],
         keys: &[&str],
+        fitting: &[&str],
         example: &str,
     ) -> Option<()> {
         let stands = |key: &&str| given.contains(key);
@@ -93,7 +99,7 @@ impl Lift<'_> {
             0 => "none of them".to_owned(),
             _ => names.join(" and "),
         };
-        let allowed = format!("exactly one of {}", keys.join(", "));
+        let allowed = format!("exactly one of {}", fitting.join(", "));
         self.problems.report(table, found, allowed, remedy);
         None
     }

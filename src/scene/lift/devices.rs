@@ -1,7 +1,8 @@
 //! Inflows and outflows.
 
+use super::faces::Face;
 use super::geometry::Region;
-use super::{Lift, cross_product, dot, length, minus};
+use super::{Lift, cross_product, dot, length, minus, normalized};
 use crate::scene::raw::{Entry, RawInflow, RawOutflow};
 use crate::scene::types::{Inflow, NamedMaterial, Outflow, Point};
 
@@ -36,6 +37,10 @@ impl Lift<'_> {
             return None;
         }
         let flux = self.check_inflow_direction(raw, from, to, span, velocity?)?;
+        if let (Some(way), Some(spacing)) = (normalized(velocity?), self.spacing) {
+            let face = Face::new([from, to, span], way, spacing);
+            self.check_inflow_against_walls(&entry.place, &face);
+        }
         let density = Self::rest_density(materials, material?)?;
         let width = if self.axisymmetric() {
             std::f64::consts::PI * (from[0] + to[0])

@@ -2,10 +2,9 @@
 
 use super::{Lift, dot};
 use crate::scene::raw::{
-    At, Coordinates, Entry, Length, Place, QuantityWord, Ratio, RawFront, RawGauge, RawMaterial,
-    RawPressure, RawProfile,
+    At, Coordinates, Entry, Length, Place, Ratio, RawFront, RawGauge, RawProfile,
 };
-use crate::scene::types::{ForceTarget, Gauge, GaugeKind, Point, PressureQuantity};
+use crate::scene::types::{ForceTarget, Gauge, GaugeKind, Point};
 
 type Up<'a> = Option<&'a At<Coordinates<Ratio>>>;
 
@@ -54,50 +53,12 @@ impl Lift<'_> {
             }
             RawGauge::Front(raw) => self.front(raw),
             RawGauge::Mass(raw) => {
-                let (lower, upper) = self.corners(raw.lower.as_ref(), raw.upper.as_ref())?;
+                let (lower_at, upper_at) = (raw.lower.as_ref(), raw.upper.as_ref());
+                let (lower, upper) = self.corners(lower_at, upper_at)?;
+                self.check_box_meets_domain((&lower_at?.place, lower), (&upper_at?.place, upper))?;
                 Some(GaugeKind::Mass { lower, upper })
             }
         }
-    }
-
-    /// Which pressure; that of pores only where a material has some or is a fluid, that of grains only where there are some.
-    fn quantity(&mut self, raw: &RawPressure) -> Option<PressureQuantity> {
-        let at = raw.quantity.as_ref()?;
-        let entries = self.raw.materials.iter().flat_map(|m| &m.value.0);
-        let materials: Vec<&RawMaterial> =
-            entries.filter_map(|entry| entry.value.as_ref()).collect();
-        let wet = |raw: &&RawMaterial| match raw {
-            RawMaterial::Fluid(_) => true,
-            RawMaterial::MuI(raw) => raw.pore_fluid.is_some(),
-            RawMaterial::BarkerGray(raw) => raw.pore_fluid.is_some(),
-            RawMaterial::ConstantFriction(raw) => raw.pore_fluid.is_some(),
-        };
-        let grains = |raw: &&RawMaterial| !matches!(raw, RawMaterial::Fluid(_));
-        Some(match at.value {
-            QuantityWord::Total => PressureQuantity::Total,
-            QuantityWord::Effective => {
-                if !materials.is_empty() && !materials.iter().any(grains) {
-                    self.problems.report(
-                        &at.place,
-                        "\"effective\" where all materials are fluids: no grain presses on grain",
-                        "\"total\" or \"pore\"",
-                        "choose another quantity",
-                    );
-                }
-                PressureQuantity::Effective
-            }
-            QuantityWord::Pore => {
-                if !materials.iter().any(wet) {
-                    self.problems.report(
-                        &at.place,
-                        "\"pore\" where no material is a fluid or saturated",
-                        "\"total\" or \"effective\", or a material with pore_fluid",
-                        "choose another quantity, or add pore_fluid to a material",
-                    );
-                }
-                PressureQuantity::Pore
-            }
-        })
     }
 
     /// The one material that a gauge sees, `Some(None)` for all; `None` where a problem was reported.
@@ -158,6 +119,44 @@ impl Lift<'_> {
         })
     }
 
+    /// A box may reach beyond the domain, but not lie beside it.
+    fn check_box_meets_domain(
+        &mut self,
+        (lower_at, lower): (&Place, Point),
+        (upper_at, upper): (&Place, Point),
+    ) -> Option<()> {
+        let domain = self.domain.clone()?;
+        let eps = self.eps();
+        for axis in 0..self.axes() {
+            let name = Self::axis_name(axis);
+            let (place, found, allowed) = if lower[axis] >= domain.upper[axis] - eps {
+                let side = domain.upper[axis];
+                (
+                    lower_at,
+                    lower[axis],
+                    format!("below {side} m, where the domain ends"),
+                )
+            } else if upper[axis] <= domain.lower[axis] + eps {
+                let side = domain.lower[axis];
+                (
+                    upper_at,
+                    upper[axis],
+                    format!("above {side} m, where the domain begins"),
+                )
+            } else {
+                continue;
+            };
+            self.problems.report(
+                place,
+                format!("{name} = {found} m: the box lies wholly outside the domain"),
+                format!("{name} {allowed}"),
+                "move the box into the domain, or enlarge domain.lower and domain.upper",
+            );
+            return None;
+        }
+        Some(())
+    }
+
     fn check_feet(&mut self, place: &Place, from: Point, to: Point) {
         if super::length(super::minus(to, from)) <= self.eps() {
             self.problems.report(
@@ -179,7 +178,11 @@ impl Lift<'_> {
                 &direction_at.place,
                 "a direction parallel to up",
                 "a direction along the bed",
-                "write for example [1, 0]",
+                if self.planar() {
+                    "write for example [1, 0]"
+                } else {
+                    "write for example [1, 0, 0]"
+                },
             );
             return None;
         }

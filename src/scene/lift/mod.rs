@@ -8,6 +8,7 @@ mod circle;
 mod clearance;
 mod devices;
 mod domain;
+mod faces;
 mod friction;
 mod gauges;
 mod geometry;
@@ -16,6 +17,7 @@ mod motion;
 mod numerics;
 mod paper_a;
 mod paper_b;
+mod pressures;
 mod profile;
 mod run;
 mod scheme;
@@ -87,8 +89,10 @@ struct Lift<'r> {
     filled: Vec<(Place, Region)>,
     /// Outflows lifted so far.
     drains: Vec<(Place, Region)>,
-    /// Plates of gates, where they cover their gap at the start.
+    /// Plates of planar gates, where they cover their gap at the start.
     plates: Vec<(Place, Region)>,
+    /// The same in space: places within the plate.
+    space_plates: Vec<(Place, Vec<Point>)>,
     /// Walls, as far as bodies must keep clear of them.
     solids: Vec<(Place, walls::Solid)>,
     /// Heights along "up" of walls and gates [m].
@@ -115,6 +119,7 @@ impl<'r> Lift<'r> {
             filled: Vec::new(),
             drains: Vec::new(),
             plates: Vec::new(),
+            space_plates: Vec::new(),
             solids: Vec::new(),
             heights: Vec::new(),
         };
@@ -233,7 +238,11 @@ impl<'r> Lift<'r> {
                 &at.place,
                 "a vector of length 0",
                 "a direction: any vector that is not 0",
-                "write for example [0, 1]",
+                if self.planar() {
+                    "write for example [0, 1]"
+                } else {
+                    "write for example [0, 0, 1]"
+                },
             );
         }
         unit

@@ -41,7 +41,11 @@ impl Lift<'_> {
                 &entry.place,
                 "motion = \"rigid\" without velocity or angular_velocity",
                 "one of them, not 0",
-                "add for example velocity = [0, \"-1 mm/s\"], or delete motion",
+                if self.planar() {
+                    "add for example velocity = [0, \"-1 mm/s\"], or delete motion"
+                } else {
+                    "add for example velocity = [0, 0, \"-1 mm/s\"], or delete motion"
+                },
             );
         }
         Some(Motion {
@@ -84,7 +88,11 @@ impl Lift<'_> {
                     &rate.place,
                     "angular_velocity without a centre",
                     "angular_velocity beside the centre of rotation",
-                    "add for example centre = [0, 0]",
+                    if self.planar() {
+                        "add for example centre = [0, 0]"
+                    } else {
+                        "add for example centre = [0, 0, 0]"
+                    },
                 );
             }
             return None;
@@ -161,17 +169,42 @@ impl Lift<'_> {
             _ => false,
         };
         let plane = matches!(geometry, WallGeometry::Plane { .. });
-        if plane == rigid || (!rigid && !table) {
-            self.problems.report(
-                place,
-                if rigid {
-                    "a rigid plane that turns"
-                } else {
-                    "a belt that turns"
-                },
-                "rotation of rigid polylines, circles and boxes, and of belts that are planes across the axis",
-                "set motion = \"rigid\" (planes: \"belt\", with axis along the normal)",
-            );
+        if plane != rigid && (rigid || table) {
+            return;
+        }
+        let found = match (rigid, plane) {
+            (true, _) => "a rigid plane that turns",
+            (false, true) => "a belt that turns about an axis along it",
+            (false, false) => "a belt that turns",
+        };
+        let (allowed, remedy) = match (self.planar(), plane) {
+            (true, true) => (
+                "rotation of rigid polylines, circles and boxes; planes cannot turn",
+                "use a polyline, a circle or a box, or delete angular_velocity",
+            ),
+            (true, false) => (
+                "rotation of rigid polylines, circles and boxes",
+                "set motion = \"rigid\"",
+            ),
+            (false, true) => (
+                "rotation of rigid boxes, and of belts that are planes across the axis; planes cannot turn otherwise",
+                "use boxes, or set motion = \"belt\" with the axis along the plane's normal",
+            ),
+            (false, false) => (
+                "rotation of rigid boxes, and of belts that are planes across the axis",
+                "set motion = \"rigid\"",
+            ),
+        };
+        self.problems.report(place, found, allowed, remedy);
+    }
+
+    /// Whether a wall of an axisymmetric scene begins at r = 0; a plane that is no cylinder does.
+    fn reaches_axis(&self, geometry: &WallGeometry) -> bool {
+        let eps = self.eps();
+        match geometry {
+            WallGeometry::Polyline { points, .. } => points.iter().any(|p| p[0] <= eps),
+            WallGeometry::Box { lower, .. } => lower[0] <= eps,
+            WallGeometry::Plane { normal, .. } => normal[1].abs() > 1e-6,
         }
     }
 
@@ -190,6 +223,17 @@ impl Lift<'_> {
                 })
                 .fold(0.0, f64::max),
         };
+        if self.axisymmetric() && velocity[0] != 0.0 && self.reaches_axis(geometry) {
+            self.problems.report(
+                place,
+                format!(
+                    "a radial velocity of {} m/s of a wall that reaches the axis",
+                    velocity[0]
+                ),
+                "radial belts away from the axis only: on it nothing can move apart or together",
+                "begin the wall at a radius above 0, or set the first component to 0",
+            );
+        }
         if across > 1e-6 * speed {
             self.problems.report(
                 place,

@@ -48,6 +48,10 @@ impl Lift<'_> {
         if stress > 0.0 {
             return Some(stress);
         }
+        // A material that could not be read has been reported, and may be the strong one.
+        if materials.iter().any(Option::is_none) {
+            return None;
+        }
         self.problems.report(
             &table.child("reference_yield_stress"),
             "nothing, and no weight of material that it follows from",

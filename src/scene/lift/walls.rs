@@ -1,9 +1,10 @@
 //! Walls and gates.
 
+use super::faces::plate_places;
 use super::geometry::Region;
 use super::{Lift, length, minus, normalized};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
-use crate::scene::types::{Gate, Point, Slip, Wall, WallGeometry};
+use crate::scene::types::{Dimension, Gate, Point, Slip, Wall, WallGeometry};
 
 /// Rows of wall particles: a gate is at least this many spacings deep.
 const ROWS: f64 = 4.0;
@@ -84,12 +85,17 @@ impl Lift<'_> {
 
     /// Exactly one of polyline, circle, box and plane.
     fn wall_geometry(&mut self, entry: &Entry<RawWall>, raw: &RawWall) -> Option<WallGeometry> {
-        self.check_one_of(
-            &entry.place,
-            &raw.given,
-            &["polyline", "circle", "box", "plane"],
-            "polyline = [[0, 0], [1, 0]]",
-        )?;
+        let chain = "polyline = [[0, 0], [1, 0]]";
+        let (keys, example): (&[&str], _) = match self.dimension {
+            Dimension::Two => (&["polyline", "circle", "box", "plane"], chain),
+            Dimension::Axisymmetric => (&["polyline", "box", "plane"], chain),
+            Dimension::Three => (
+                &["box", "plane"],
+                "plane = { point = [0, 0, 0], normal = [0, 0, 1] }",
+            ),
+        };
+        let all = ["polyline", "circle", "box", "plane"];
+        self.check_one_of(&entry.place, &raw.given, &all, keys, example)?;
         if let (Some(closed), false) = (&raw.closed, raw.given.contains(&"polyline")) {
             self.problems.report(
                 &closed.place,
@@ -231,7 +237,10 @@ impl Lift<'_> {
             start: raw.start.as_ref()?.value.0,
             slip: slip?,
         };
-        if let (true, Some(plate)) = (self.planar(), plate(&gate)) {
+        if !self.planar() {
+            let places = plate_places(&gate, spacing);
+            self.space_plates.push((entry.place.clone(), places));
+        } else if let Some(plate) = plate(&gate) {
             self.plates.push((entry.place.clone(), plate));
         }
         Some(gate)

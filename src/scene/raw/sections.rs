@@ -263,9 +263,9 @@ table! {
         optional wall_friction: Ratio, in Range::from(0.0);
         /// What velocity and angular_velocity move.
         optional motion: MotionWord, default "belt";
-        /// Velocity. Of a belt: along its surface. Of a rigid wall: any, of a plane along its normal.
+        /// Velocity. Of a belt: along its surface, in axisymmetric scenes not along r where the wall reaches the axis. Of a rigid wall: any, of a plane along its normal.
         optional velocity: Coordinates<Speed>;
-        /// Rate of turning about `centre`: anticlockwise in the plane, in space right-handed about `axis`. Rigid walls, and belts that are planes across `axis`.
+        /// Rate of turning about `centre`: anticlockwise in the plane, in space right-handed about `axis`. Rigid polylines, circles and boxes, and belts that are planes across `axis`; planes cannot turn otherwise.
         optional angular_velocity: AngularSpeed;
         /// Centre of rotation; it moves with `velocity`.
         optional centre: Coordinates<Length>;
@@ -327,7 +327,7 @@ table! {
 }
 
 table! {
-    /// A source: rows of particles enter through the face from `from` to `to`, on its left side, at a set velocity.
+    /// A source: rows of particles enter through the face from `from` to `to`, on its left side, at a set velocity. Rows come in only where a spacing before the face is free: it must be above the surface or in free room, since a source under material is blocked.
     RawInflow {
         /// Name of the material that enters.
         required material: Text;

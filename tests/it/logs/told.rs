@@ -174,6 +174,22 @@ fn other_files_and_taken_names_are_refused() {
 }
 
 #[test]
+fn an_export_of_times_that_the_log_does_not_have_is_told() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let csv = folder.path().join("gauges.csv").display().to_string();
+    let path = log_of(logged());
+    let words = ["log", "export", &path, "--csv", &csv, "--from", "1000 s"].map(OsStr::new);
+    let output = sandgate(&words);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(
+        said.contains("from 1000 s on: the log holds 0 to "),
+        "{said}"
+    );
+    assert_eq!(std::fs::read_to_string(&csv).unwrap().lines().count(), 1);
+}
+
+#[test]
 fn the_exported_table_is_that_of_the_run_and_others_read_it() {
     let folder = temp_dir::TempDir::new().unwrap();
     let at = |name: &str| folder.path().join(name).display().to_string();
