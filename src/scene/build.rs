@@ -5,19 +5,15 @@ use crate::boundary::{
     joined_points, plane_points,
 };
 use crate::math::{Geometry, Vector, add, dot, norm, scale, sub};
-use crate::shape::lattice;
+use crate::shape::{Lattice, lattice};
 use crate::solver::{Periodic, Plan, Scheme, Sink, Source, three};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
 use super::elements::elements;
 use super::ghosts::ghost_depth;
+use super::load::Loads;
 use super::steady_flow::steady_flow;
-use super::{
-    Body, Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, Wall, WallGeometry,
-};
-
-/// Halvings of a spacing that find where a body ends.
-const BISECTIONS: u32 = 20;
+use super::{Dimension, ForceTarget, GaugeKind, Inflow, Point, Scene, Slip, Wall, WallGeometry};
 
 /// The first D components of a point.
 #[must_use]
@@ -149,16 +145,18 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
                 dp
             }
     };
-    for body in &scene.bodies {
+    let lattices: Vec<Lattice> = scene
+        .bodies
+        .iter()
+        .map(|body| {
+            let level = body.level.map(|l| (up, l));
+            lattice(&body.shape, level, scene.numerics.spacing, D, staggered)
+        })
+        .collect();
+    let loads = Loads::new::<D>(scene, up, &lattices);
+    for (number, (body, lattice)) in scene.bodies.iter().zip(&lattices).enumerate() {
         let material = &scene.materials[body.material].material;
         let sound_speed = material.sound_speed.unwrap_or(scene.numerics.sound_speed);
-        let lattice = lattice(
-            &body.shape,
-            body.level.map(|l| (up, l)),
-            scene.numerics.spacing,
-            D,
-            staggered,
-        );
         let flow = steady_flow(scene, body);
         let bulk = flow
             .as_ref()
@@ -168,7 +166,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
                 std::array::from_fn(|k| place[k] + reach(k, place) * random.symmetric());
             let mut velocity: Vector<D> = narrow(&body.velocity);
             let mut density =
-                material.density_under(load_above(scene, &three(&position), up), sound_speed);
+                material.density_under(loads.above(number, &three(&position)), sound_speed);
             let mut shear_rate = 0.0;
             if let Some(flow) = &flow {
                 let here = flow.at(&three(&position), scene.numerics.sound_speed);
@@ -225,71 +223,6 @@ fn up_axis(scene: &Scene) -> usize {
             best
         }
     })
-}
-
-/// Weight of the material above a place, along the up axis [Pa]: the starting pressure.
-fn load_above(scene: &Scene, place: &Point, up: usize) -> f64 {
-    let g = scene.domain.gravity[up];
-    let direction = if g < 0.0 { 1.0 } else { -1.0 };
-    let above = |body: &Body| {
-        let (lower, upper) = body.shape.bounds();
-        let top = if direction > 0.0 {
-            body.level.map_or(upper[up], |l| l.min(upper[up]))
-        } else {
-            lower[up]
-        };
-        let height = direction * (top - place[up]);
-        let rho = scene.materials[body.material].material.rest_density();
-        if height > 0.0 && height.is_finite() {
-            rho * g.abs() * filled(scene, body, place, (up, direction), height)
-        } else {
-            0.0
-        }
-    };
-    scene.bodies.iter().map(above).sum()
-}
-
-/// How much of the way of length `height` from `place` along an axis lies in a body [m].
-fn filled(
-    scene: &Scene,
-    body: &Body,
-    place: &Point,
-    (axis, direction): (usize, f64),
-    height: f64,
-) -> f64 {
-    let inside = |way: f64| {
-        let mut x = *place;
-        x[axis] += direction * way;
-        body.shape.contains(&x)
-    };
-    // Just short of the top, which belongs to no body.
-    let end = height * (1.0 - 1e-9);
-    let count = (height / scene.numerics.spacing).ceil().max(1.0);
-    let step = end / count;
-    let mut length = 0.0;
-    let mut was = inside(0.0);
-    for n in 0..count as usize {
-        let from = n as f64 * step;
-        let is = inside(from + step);
-        length += match (was, is) {
-            (true, true) => step,
-            (false, false) => 0.0,
-            _ => {
-                let (mut low, mut high) = (0.0, step);
-                for _ in 0..BISECTIONS {
-                    let middle = 0.5 * (low + high);
-                    if inside(from + middle) == was {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                if was { low } else { step - low }
-            }
-        };
-        was = is;
-    }
-    length
 }
 
 /// What all points of a wall or gate share.

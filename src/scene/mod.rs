@@ -11,6 +11,7 @@ mod error;
 mod gates;
 mod ghosts;
 mod lift;
+mod load;
 mod quality;
 mod raw;
 mod reference;
