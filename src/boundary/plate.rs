@@ -174,6 +174,12 @@ impl<const D: usize> Plate<D> {
                 .is_none_or(|(u, width)| (0.0..width).contains(&dot(&d, &u)))
     }
 
+    /// Length of the leading edge over the spacing [1]; 1 in the plane, where it is a point.
+    #[must_use]
+    pub fn breadth(&self, spacing: f64) -> f64 {
+        self.across.map_or(1.0, |(_, width)| width / spacing)
+    }
+
     /// Unit normal from the nearest point of the plate's surface to `x`, at an opening.
     #[must_use]
     pub fn normal_at(&self, x: &Vector<D>, opening: f64) -> Vector<D> {

@@ -6,6 +6,10 @@ use crate::state::State;
 use super::Solver;
 use super::timestep::MOST_OF_A_PLATE;
 
+/// Share of a leading edge that has to be stood against [1]. A stream always has single grains in the way somewhere along an edge: were one
+/// enough, a gate would not close through it, the less the longer its edge or the finer the spacing.
+const HELD: f64 = 0.5;
+
 /// Distance to the leading edge at which a grain stops a plate, over the spacing; of one that is in a wall already.
 const TOUCH: f64 = 0.25;
 const PRESSED: f64 = 0.75;
@@ -84,7 +88,8 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Whether a grain stands against the leading edge of a plate that wants to close.
+    /// Whether grains stand against the leading edge of a plate that wants to close: one in the plane, along a [`HELD`] of the edge in
+    /// space. Fewer are pushed aside.
     fn is_blocked(&self, state: &State<D>, gate: usize) -> bool {
         let (plate, opening) = (&self.plates[gate], state.gates[gate].opening);
         let stops = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing, TOUCH);
@@ -95,7 +100,11 @@ impl<const D: usize> Solver<D> {
             let rows = block.wall_rows.iter().filter(|w| w.barrier > 0.0);
             rows.map(move |w| b * CHUNK + w.row as usize)
         });
-        state.grains.position.iter().any(stops)
+        let enough = (HELD * plate.breadth(self.numerics.spacing))
+            .ceil()
+            .max(1.0);
+        let standing = state.grains.position.iter().filter(|x| stops(x));
+        standing.take(enough as usize).count() == enough as usize
             || pushed.any(|i| state.grains.position.get(i).is_some_and(squeezed))
     }
 
