@@ -174,10 +174,21 @@ impl<const D: usize> Plate<D> {
                 .is_none_or(|(u, width)| (0.0..width).contains(&dot(&d, &u)))
     }
 
-    /// Length of the leading edge over the spacing [1]; 1 in the plane, where it is a point.
+    /// Number of pieces of the leading edge, each about a spacing long; 1 in the plane, where it is a point.
     #[must_use]
-    pub fn breadth(&self, spacing: f64) -> f64 {
-        self.across.map_or(1.0, |(_, width)| width / spacing)
+    pub fn pieces(&self, spacing: f64) -> usize {
+        self.across
+            .map_or(1, |(_, width)| (width / spacing).round().max(1.0) as usize)
+    }
+
+    /// The piece of the leading edge that `x` stands before.
+    #[must_use]
+    pub fn piece_of(&self, x: &Vector<D>, spacing: f64) -> usize {
+        let pieces = self.pieces(spacing);
+        self.across.map_or(0, |(u, width)| {
+            let share = dot(&sub(x, &self.from), &u) / width;
+            ((share * pieces as f64).max(0.0) as usize).min(pieces - 1)
+        })
     }
 
     /// Unit normal from the nearest point of the plate's surface to `x`, at an opening.

@@ -1,5 +1,6 @@
 //! State, solver and gauges of a scene in D dimensions: the one implementation of [`Engine`].
 
+use std::cell::OnceCell;
 use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
@@ -89,15 +90,14 @@ impl<const D: usize> Simulation<D> {
 
     /// Particles of a material, or all. Grains that an outflow has taken stay in the arrays until lists are rebuilt; gauges do
     /// not see them.
-    fn show(&self, sight: Sight) -> Shown<D> {
+    fn show(&self, sight: Sight, stress: &OnceCell<Vec<f64>>) -> Shown<D> {
         let grains = &self.state.grains;
         let material = sight.material;
         let (pressure, has): (Vec<f64>, Vec<bool>) = match sight.quantity {
             Shows::Pressure(quantity) => self.pressures(quantity),
             Shows::ShearStress => {
-                let stress = self.solver.shear_stress(&self.state);
-                let all = vec![true; stress.len()];
-                (stress, all)
+                let stress = stress.get_or_init(|| self.solver.shear_stress(&self.state));
+                (stress.clone(), vec![true; stress.len()])
             }
         };
         let is_seen = |i: &usize| {
@@ -327,11 +327,13 @@ impl<const D: usize> Engine for Simulation<D> {
             .map(|(x, _)| *x)
             .collect();
         let solid = self.cells(&solid);
+        // Of all ranks together.
+        let stress = OnceCell::new();
         let shown: Vec<(Sight, Shown<D>)> = self
             .sampler
             .seen()
             .into_iter()
-            .map(|sight| (sight, self.show(sight)))
+            .map(|sight| (sight, self.show(sight, &stress)))
             .collect();
         let view = |sight: Sight| {
             // All that a gauge sees is shown.

@@ -1,6 +1,7 @@
 //! What lies on what at the start: the weight above a place makes its density (docs/theory.md, "Start").
 //!
-//! Only bodies that touch press on each other, one on the next: not through a shelf or a shut gate, and not through the air.
+//! Only bodies that touch press on each other, by way of others or themselves: not through the air, and not through a shelf or a shut gate
+//! that parts all of one from the other. What is joined beside a shelf counts as above it, as in a fluid it does.
 
 use super::{Body, Point, Scene};
 use crate::shape::Lattice;
@@ -9,9 +10,9 @@ use crate::state::CellGrid;
 /// Halvings of a spacing that find where a body ends.
 const BISECTIONS: u32 = 20;
 
-/// Places of two bodies that are nearer than this over the spacing touch [1]: a row's own distance, and some for lattices that do not fit;
-/// the thinnest wall keeps them two spacings apart.
-const TOUCH: f64 = 1.75;
+/// Places of two bodies that are nearer than this over the spacing touch [1]: a row's own distance, and some for lattices that do not fit.
+/// A wall of four tenths of a spacing keeps them further apart.
+const TOUCH: f64 = 1.35;
 
 /// The starting loads of a scene.
 pub(super) struct Loads<'a> {
@@ -155,6 +156,7 @@ spacing = "5 mm"
 [materials.m]
 law = "fluid"
 density = 1000
+consistency = 1
 {others}
 [bodies.z]
 material = "m"

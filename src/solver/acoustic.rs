@@ -49,9 +49,9 @@ impl<const D: usize> Solver<D> {
         let count = (dt / self.numerics.acoustic_step() - 1e-9).ceil();
         let count = count.clamp(1.0, most);
         let small = dt / count;
+        self.acoustic.count = count as u32;
         self.sweep_pressure(state, small);
         let mut work = std::mem::take(&mut self.acoustic);
-        work.count = count as u32;
         work.way.clear();
         work.pressure.clear();
         if count > 1.0 {

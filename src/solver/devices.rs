@@ -88,8 +88,8 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Whether grains stand against the leading edge of a plate that wants to close: one in the plane, along a [`HELD`] of the edge in
-    /// space. Fewer are pushed aside.
+    /// Whether grains stand against the leading edge of a plate that wants to close, along a share [`HELD`] of it in space: fewer are
+    /// pushed aside.
     fn is_blocked(&self, state: &State<D>, gate: usize) -> bool {
         let (plate, opening) = (&self.plates[gate], state.gates[gate].opening);
         let stops = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing, TOUCH);
@@ -100,12 +100,13 @@ impl<const D: usize> Solver<D> {
             let rows = block.wall_rows.iter().filter(|w| w.barrier > 0.0);
             rows.map(move |w| b * CHUNK + w.row as usize)
         });
-        let enough = (HELD * plate.breadth(self.numerics.spacing))
-            .ceil()
-            .max(1.0);
-        let standing = state.grains.position.iter().filter(|x| stops(x));
-        standing.take(enough as usize).count() == enough as usize
-            || pushed.any(|i| state.grains.position.get(i).is_some_and(squeezed))
+        let spacing = self.numerics.spacing;
+        let mut held = vec![false; plate.pieces(spacing)];
+        for x in state.grains.position.iter().filter(|x| stops(x)) {
+            held[plate.piece_of(x, spacing)] = true;
+        }
+        let share = held.iter().filter(|h| **h).count() as f64 / held.len() as f64;
+        share >= HELD || pushed.any(|i| state.grains.position.get(i).is_some_and(squeezed))
     }
 
     /// Counts and marks what has entered a sink; removal waits for the next lists.

@@ -19,7 +19,7 @@ pub(super) fn rate<const D: usize>(lattice_sum: f64) -> f64 {
 }
 
 impl<const D: usize> Solver<D> {
-    /// Names in `work.explicit` the rows of Newtonian fluids that, like all their neighbours, have a small e.
+    /// Names in `work.explicit` the rows of Newtonian fluids that, like all fluids among their neighbours, have a small e.
     pub(super) fn find_explicit(&self, state: &State<D>, dt: f64, work: &mut Viscous<D>) {
         let (explicit, quick) = (&mut work.explicit, &mut work.quick);
         explicit.clear();
@@ -39,10 +39,13 @@ impl<const D: usize> Solver<D> {
         self.workers
             .blocks_read(&self.lists.blocks, explicit, |block, first, out| {
                 for (row, explicit) in out.iter_mut().enumerate() {
-                    // Between fluid and grains the fluid's stress acts, and that is quick.
-                    let [like, other, ..] = block.kinds(row);
+                    let i = first + row;
+                    // Between fluid and grains the fluid's stress acts, twice (F6), and that is quick.
+                    let [like, other, harder, _] = block.kinds(row);
+                    let is_quick = harder.is_empty()
+                        || 2.0 * dt * rate * self.viscosity[i] < MOST * grains.density[i];
                     let mut near = block.j[like.start..other.end].iter().flatten();
-                    *explicit = quick[first + row] && near.all(|&j| quick[j as usize]);
+                    *explicit = quick[i] && is_quick && near.all(|&j| quick[j as usize]);
                 }
             });
     }

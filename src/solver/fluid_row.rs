@@ -146,15 +146,15 @@ impl<const D: usize> Solver<D> {
         let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
         let (mut pair_shear2, mut speed2, mut fourfold) = (zero, zero, [zero; 2]);
         let (mut side, mut nearness) = ([zero; D], zero);
-        // Gradient and moment without harder and softer neighbours, and without softer ones.
-        let mut until = [(gradient, moment); 2];
+        // Sums without harder and softer neighbours, and without softer ones.
+        let mut until = [(gradient, moment, pair_shear2); 2];
         let groups = near.as_chunks::<LANES>().0;
         let (g, c) = block.next_row(groups);
         for (n, ((j, g), c)) in groups.iter().zip(g).zip(c).enumerate() {
             if MEET {
                 for (until, &end) in until.iter_mut().zip(&kinds[1..]) {
                     if n == end {
-                        *until = (gradient, moment);
+                        *until = (gradient, moment, pair_shear2);
                     }
                 }
             }
@@ -211,9 +211,13 @@ impl<const D: usize> Solver<D> {
         if MEET {
             for (until, &end) in until.iter_mut().zip(&kinds[1..]) {
                 if end >= groups.len() {
-                    *until = (gradient, moment);
+                    *until = (gradient, moment, pair_shear2);
                 }
             }
+        }
+        if MEET {
+            // What the shear rate is compared with is of the same neighbours.
+            sums.pair_shear2 = dissipation * until[1].2.sum();
         }
         for a in 0..D {
             for b in 0..D {
@@ -221,7 +225,7 @@ impl<const D: usize> Solver<D> {
                 let m = moment[a.min(b)][a.max(b)];
                 sums.moment[a][b] = m.sum();
                 if MEET {
-                    let [(own, _), (harder, most)] = &until;
+                    let [(own, ..), (harder, most, _)] = &until;
                     // Harder ones twice, softer ones not at all.
                     let once_more = harder[a][b] - own[a][b];
                     sums.images[a][b] = (once_more - (gradient[a][b] - harder[a][b])).sum();

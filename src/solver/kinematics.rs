@@ -91,7 +91,7 @@ impl<const D: usize> Solver<D> {
         first: usize,
         out: &mut [Kinematics],
     ) {
-        block.forget_pairs();
+        block.forget_pairs(if MEET { KINDS - 1 } else { 0 });
         let mut near = std::mem::take(&mut block.near);
         let mut contacts = std::mem::take(&mut block.contacts);
         for (row, o) in out.iter_mut().enumerate() {

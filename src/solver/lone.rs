@@ -37,8 +37,9 @@ impl<const D: usize> Solver<D> {
             let mut walls = block.wall_rows.iter().peekable();
             for row in 0..block.rows() {
                 let wall = walls.next_if(|w| w.row as usize == row);
-                if is_lone(block, row) {
-                    let i = first + row;
+                let i = first + row;
+                let material = &self.materials[state.grains.phase[i] as usize];
+                if material.is_fluid() && is_lone(block, row) {
                     let rate = wall.map_or(0.0, |w| wall_rate(w, &self.viscous.velocity[i]));
                     self.lone.push((state.grains.id[i], rate));
                 }

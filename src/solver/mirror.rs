@@ -124,7 +124,9 @@ impl<const D: usize> Solver<D> {
         let x = &state.grains.position;
         for &j in near {
             let other = &self.mirrors[j as usize];
-            if j as usize == i || other.distance <= 0.0 {
+            // Between materials no more than (F6) says.
+            let same = state.grains.phase[i] == state.grains.phase[j as usize];
+            if j as usize == i || other.distance <= 0.0 || !same {
                 continue;
             }
             let offset = self.periodic.difference(&x[i], &x[j as usize]);

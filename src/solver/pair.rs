@@ -152,10 +152,10 @@ impl<const D: usize> Block<D> {
         &self.walls[start as usize..self.ends[row].1 as usize]
     }
 
-    /// Forgets groups, wall rows and contacts before a sweep makes them anew.
-    pub(super) fn forget_pairs(&mut self) {
+    /// Forgets groups, wall rows and contacts before a sweep makes them anew, with up to this many `more` groups a row than are listed.
+    pub(super) fn forget_pairs(&mut self, more: usize) {
         // Room for all that is listed, made once: no row has to ask for it, and lanes' registers outlive what they write.
-        let most = self.filled.0 / LANES + (KINDS - 1) * self.rows();
+        let most = self.filled.0 / LANES + more * self.rows();
         if self.j.len() < most {
             self.j.resize(most, [0; LANES]);
             self.g.resize(most, [Quad::default(); D]);

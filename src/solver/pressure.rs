@@ -19,7 +19,7 @@ pub(super) struct Prediction<const D: usize> {
     /// d rho/dt by diffusion [kg/(m^3 s)].
     pub(super) diffusion: f64,
     /// How viscosity resists a particle that moves alone, walls not counted (docs/theory.md, E17) [Pa s/m^2]:
-    /// sum_j 2 s_p eta_ij c g g^T + (1 - s_p) eta_j (|g|^2 I + (1 - 2/D) g g^T).
+    /// sum_j 2 s_p eta_ij c g g^T + m_ji^2 (1 - s_p) eta_j (|g|^2 I + (1 - 2/D) g g^T), m_ji of (F6).
     pub(super) resistance: Tensor<D>,
 }
 
@@ -94,8 +94,7 @@ impl<const D: usize> Solver<D> {
                         for k in 0..D {
                             o.velocity[k] += dt * w.push[k];
                         }
-                        // Over all acoustic steps there may be.
-                        let whole = dt * f64::from(self.numerics.acoustic_steps);
+                        let whole = dt * f64::from(self.acoustic.count());
                         let slow = 2.0 * self.gravity_norm * whole;
                         w.grip = w.rub.grip(&w.push, &o.velocity, (whole, slow));
                     }

@@ -3,7 +3,7 @@
 //! Adjoint stress form: e = dev sym G(v), tau = 2 eta e, force on i: V_i [sum_j (tau_i + tau_j) g_ij + 2 K_i : tau_i].
 //! It is minus the adjoint of G, with the very weights that pressure is transmitted with, so tau/p arrives as it should
 //! and the operator is symmetric and positive. A share of eta goes through the pair form, which sees the zero-energy
-//! modes that G does not.
+//! modes that G does not. Between materials m_ij tau_i + m_ji tau_j stand for tau_i + tau_j (`meeting`).
 
 use std::ops::Range;
 

@@ -204,7 +204,10 @@ impl Lift<'_> {
         match geometry {
             WallGeometry::Polyline { points, .. } => points.iter().any(|p| p[0] <= eps),
             WallGeometry::Box { lower, .. } => lower[0] <= eps,
-            WallGeometry::Plane { normal, .. } => normal[1].abs() > 1e-6,
+            WallGeometry::Plane { normal, .. } => {
+                let at_axis = self.domain.as_ref().is_none_or(|d| d.lower[0] <= eps);
+                at_axis && normal[1].abs() > 1e-6
+            }
         }
     }
 

@@ -41,7 +41,7 @@ impl<const D: usize> Solver<D> {
         });
         let mut blocks = std::mem::take(&mut self.lists.blocks);
         self.workers.blocks(&mut blocks, out, |block, first, out| {
-            block.forget_pairs();
+            block.forget_pairs(0);
             let mut near = std::mem::take(&mut block.near);
             in_lanes!(self.arch, |lanes| {
                 for (row, rates) in out.iter_mut().enumerate() {
