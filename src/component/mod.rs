@@ -227,7 +227,8 @@ impl Component {
     /// Instantiated -> Initialization. `stop`: no step may end later [s].
     ///
     /// # Errors
-    /// [`Error::NotAllowedNow`], [`Error::BadArgument`] for times that are not finite or in the wrong order.
+    /// [`Error::NotAllowedNow`], [`Error::BadArgument`] for times that are not finite, in the wrong order, or so far from 0 that doubles
+    /// do not tell a thousandth of an acoustic step from the next.
     pub fn enter_initialization(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
         lifecycle::check(Call::EnterInitialization, self.life.mode)?;
         let refuse = |what: &str, found: f64, allowed: String| {

@@ -214,8 +214,6 @@ impl<const D: usize> Solver<D> {
                     *until = (gradient, moment, pair_shear2);
                 }
             }
-        }
-        if MEET {
             // What the shear rate is compared with is of the same neighbours.
             sums.pair_shear2 = dissipation * until[1].2.sum();
         }

@@ -93,6 +93,7 @@ impl<const D: usize> Solver<D> {
     ) {
         block.forget_pairs(if MEET { KINDS - 1 } else { 0 });
         let mut near = std::mem::take(&mut block.near);
+        let mut found = std::mem::take(&mut block.found);
         let mut contacts = std::mem::take(&mut block.contacts);
         for (row, o) in out.iter_mut().enumerate() {
             let i = first + row;
@@ -100,7 +101,7 @@ impl<const D: usize> Solver<D> {
             let mut count = self.find_near(lanes, records, i, x, block.row(row), &mut near);
             let mut kinds = [count / LANES; KINDS - 1];
             if MEET {
-                (count, kinds) = self.sort_by_kind(state, i, &mut near, count);
+                (count, kinds) = self.sort_by_kind(state, i, &mut near, count, &mut found);
                 block.tell_kinds(kinds);
             }
             let mut sums = self.fluid_row::<L, RINGS, FLUIDS, MEET>(
@@ -135,6 +136,7 @@ impl<const D: usize> Solver<D> {
             }
         }
         block.near = near;
+        block.found = found;
         block.contacts = contacts;
     }
 

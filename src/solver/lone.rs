@@ -5,7 +5,7 @@
 //! is all the walls', so both ends are to be had: their mean makes density a function of place, to second order, and the jump
 //! elastic. In flight it has nothing that could press it.
 
-use crate::math::{Vector, dot};
+use crate::math::{CHUNK, Vector, dot};
 use crate::state::State;
 
 use super::Solver;
@@ -26,27 +26,36 @@ fn is_lone<const D: usize>(block: &Block<D>, row: usize) -> bool {
 }
 
 impl<const D: usize> Solver<D> {
+    /// Particles of fluids without neighbours, and what they see of walls.
+    fn lone_rows<'a>(
+        &'a self,
+        phase: &'a [u8],
+    ) -> impl Iterator<Item = (usize, Option<&'a WallRow<D>>)> {
+        let blocks = self.lists.blocks.iter().enumerate();
+        blocks.flat_map(move |(b, block)| {
+            let mut walls = block.wall_rows.iter().peekable();
+            (0..block.rows()).filter_map(move |row| {
+                let wall = walls.next_if(|w| w.row as usize == row);
+                let i = b * CHUNK + row;
+                let is_fluid = self.materials[phase[i] as usize].is_fluid();
+                (is_fluid && is_lone(block, row)).then_some((i, wall))
+            })
+        })
+    }
+
     /// Notes div v of lone particles where they stand, at the velocity that is about to move them; nothing in scenes without fluids.
     pub(super) fn note_lone(&mut self, state: &State<D>) {
-        self.lone.clear();
-        if !self.has_fluids {
-            return;
+        let mut lone = std::mem::take(&mut self.lone);
+        lone.clear();
+        if self.has_fluids {
+            let rate = |(i, wall): (usize, Option<&WallRow<D>>)| {
+                let rate = wall.map_or(0.0, |w| wall_rate(w, &self.viscous.velocity[i]));
+                (state.grains.id[i], rate)
+            };
+            lone.extend(self.lone_rows(&state.grains.phase).map(rate));
+            lone.sort_unstable_by_key(|(id, _)| *id);
         }
-        let mut first = 0;
-        for block in &self.lists.blocks {
-            let mut walls = block.wall_rows.iter().peekable();
-            for row in 0..block.rows() {
-                let wall = walls.next_if(|w| w.row as usize == row);
-                let i = first + row;
-                let material = &self.materials[state.grains.phase[i] as usize];
-                if material.is_fluid() && is_lone(block, row) {
-                    let rate = wall.map_or(0.0, |w| wall_rate(w, &self.viscous.velocity[i]));
-                    self.lone.push((state.grains.id[i], rate));
-                }
-            }
-            first += block.rows();
-        }
-        self.lone.sort_unstable_by_key(|(id, _)| *id);
+        self.lone = lone;
     }
 
     /// Makes div v of those that were lone before the sweep, and are, that of the middle of the step; rho_0 where they see nothing.
@@ -54,30 +63,21 @@ impl<const D: usize> Solver<D> {
         if self.lone.is_empty() {
             return;
         }
+        let mut kinematics = std::mem::take(&mut self.kinematics);
         let grains = &mut state.grains;
-        let mut first = 0;
-        for block in &self.lists.blocks {
-            let mut walls = block.wall_rows.iter().peekable();
-            for row in 0..block.rows() {
-                let wall = walls.next_if(|w| w.row as usize == row);
-                let i = first + row;
-                let material = &self.materials[grains.phase[i] as usize];
-                if !material.is_fluid() || !is_lone(block, row) {
-                    continue;
+        for (i, wall) in self.lone_rows(&grains.phase) {
+            let Some(w) = wall else {
+                if self.rings.get(i).is_none_or(|ring| ring.axis == 0.0) {
+                    grains.density[i] = self.materials[grains.phase[i] as usize].rest_density();
                 }
-                let Some(w) = wall else {
-                    if self.rings.get(i).is_none_or(|ring| ring.axis == 0.0) {
-                        grains.density[i] = material.rest_density();
-                    }
-                    continue;
-                };
-                let known = self.lone.binary_search_by_key(&grains.id[i], |(id, _)| *id);
-                if let Ok(place) = known {
-                    let after = wall_rate(w, &grains.velocity[i]);
-                    self.kinematics[i].divergence += 0.5 * (self.lone[place].1 - after);
-                }
+                continue;
+            };
+            let known = self.lone.binary_search_by_key(&grains.id[i], |(id, _)| *id);
+            if let Ok(place) = known {
+                let after = wall_rate(w, &grains.velocity[i]);
+                kinematics[i].divergence += 0.5 * (self.lone[place].1 - after);
             }
-            first += block.rows();
         }
+        self.kinematics = kinematics;
     }
 }

@@ -34,13 +34,14 @@ pub(super) const SOFTER: u8 = 3;
 
 impl<const D: usize> Solver<D> {
     /// Sorts the `count` neighbours of particle i in `near` by kind, each filled up with i to whole groups. Returns their number, and
-    /// the numbers of groups of the first kind, of the first two and of the first three.
+    /// the numbers of groups of the first kind, of the first two and of the first three. `found` is room to work in.
     pub(super) fn sort_by_kind(
         &self,
         state: &State<D>,
         i: usize,
         near: &mut [u32],
         count: usize,
+        found: &mut Vec<u32>,
     ) -> (usize, [usize; KINDS - 1]) {
         let phase = &state.grains.phase;
         let own = phase[i];
@@ -54,16 +55,19 @@ impl<const D: usize> Solver<D> {
             (true, true) if own != other => OTHER,
             _ => LIKE,
         };
-        let mut kinds: [Vec<u32>; KINDS] = std::array::from_fn(|_| Vec::new());
-        for &j in near[..count].iter().filter(|&&j| j as usize != i) {
-            kinds[kind(phase[j as usize]) as usize].push(j);
-        }
+        found.clear();
+        found.extend(near[..count].iter().filter(|&&j| j as usize != i));
         let (mut end, mut ends) = (0, [0; KINDS]);
-        for (kind, done) in kinds.iter().zip(&mut ends) {
-            let full = kind.len().next_multiple_of(LANES);
-            near[end..end + kind.len()].copy_from_slice(kind);
-            near[end + kind.len()..end + full].fill(i as u32);
-            end += full;
+        for (n, done) in ends.iter_mut().enumerate() {
+            for &j in found.iter() {
+                if kind(phase[j as usize]) as usize == n {
+                    near[end] = j;
+                    end += 1;
+                }
+            }
+            let full = end.next_multiple_of(LANES);
+            near[end..full].fill(i as u32);
+            end = full;
             *done = end / LANES;
         }
         (end, [ends[0], ends[1], ends[2]])

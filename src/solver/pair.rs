@@ -65,6 +65,8 @@ pub(super) struct Block<const D: usize> {
     filled: (usize, usize),
     /// Neighbours within the support of the row in hand, room for the longest row.
     pub(super) near: Vec<u32>,
+    /// Room to sort them by kind in; empty where all are alike.
+    pub(super) found: Vec<u32>,
     /// Neighbours of each group; here and in `g` and `c` what lies behind the last row's end is left from earlier.
     pub(super) j: Vec<[u32; LANES]>,
     /// g of each group.

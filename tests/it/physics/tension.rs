@@ -70,3 +70,41 @@ fn what_yields_sooner_and_what_flows_fall() {
         assert!(hangs(0.9, yield_stress).is_err(), "{yield_stress}");
     }
 }
+
+/// Clay that hangs has p < 0, which bulk friction of other materials has no part in.
+#[test]
+fn clay_hangs_beside_sand_with_bulk_friction() {
+    let text = r#"
+name = "beside"
+[domain]
+lower = [-0.02, -0.1]
+upper = [0.3, 0.1]
+gravity = [9.81, 0]
+[numerics]
+spacing = 0.003
+sound_speed = 10
+[materials.mud]
+law = "fluid"
+density = 1500
+consistency = 10
+yield_stress = 300
+[materials.sand]
+law = "mu_i"
+preset = "sand_04"
+bulk_friction = 0.5
+[bodies.strip]
+material = "mud"
+box = { lower = [0, -0.012], upper = [0.03, 0.012] }
+[bodies.sand]
+material = "sand"
+box = { lower = [0.15, -0.012], upper = [0.16, 0.012] }
+[walls.top]
+polyline = [[0, 0.08], [0, -0.08]]
+[run]
+step = 0.02
+until = 0.02
+"#;
+    let (solver, _) = super::solve(&scene::parse("beside", text).unwrap(), 0.02);
+    let least = solver.pressure().iter().copied().fold(0.0, f64::min);
+    assert!(least < 0.0, "nothing is pulled");
+}

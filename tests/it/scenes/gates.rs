@@ -1,0 +1,43 @@
+//! Gates that do not fit what stands before them.
+
+use sandgate::scene;
+
+#[test]
+fn a_body_inside_a_gate_is_told_on_which_side_material_belongs() {
+    // Third coordinates of what is low and high, where there are any.
+    let scene = |dimension: u8, low: &str, high: &str, gate: &str| {
+        format!(
+            r#"
+name = "gate"
+dimension = {dimension}
+[domain]
+lower = [-0.1, -0.1{low}]
+upper = [0.6, 0.6{high}]
+[numerics]
+spacing = 0.0125
+[materials.sand]
+law = "mu_i"
+preset = "glass_beads"
+[bodies.sand]
+material = "sand"
+box = {{ lower = [0, 0{low}], upper = [0.3, 0.1{high}] }}
+[gates.front]
+{gate}
+[run]
+step = 0.02
+until = 1
+"#
+        )
+    };
+    let planar = scene(2, "", "", "from = [0.3, 0.2]\nto = [0.3, 0]");
+    let said = scene::parse("gate.toml", &planar).unwrap_err().to_string();
+    assert!(said.contains("on the left of a gate's way"), "{said}");
+    let gate = "from = [0.3, 0, 0.1]\nto = [0.3, 0.2, 0.1]\nspan = [0, 0, -0.1]";
+    let said = scene::parse("gate.toml", &scene(3, ", 0", ", 0.1", gate));
+    let said = said.unwrap_err().to_string();
+    assert!(said.contains("the plate of gates.front"), "{said}");
+    assert!(said.contains("the side of span x (to - from)"), "{said}");
+    let gate = "from = [0.3, 0, 0]\nto = [0.3, 0.2, 0]\nspan = [0, 0, 0.1]";
+    let space = scene::parse("gate.toml", &scene(3, ", 0", ", 0.1", gate)).unwrap();
+    scene::build::<3>(&space).unwrap();
+}
