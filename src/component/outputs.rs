@@ -111,6 +111,7 @@ impl Moment<'_> {
             Source::ShareIllPosed => self.statistics.share_ill_posed,
             Source::CreepRate => self.statistics.creep_rate,
             Source::ShareFast => self.statistics.share_fast,
+            Source::ShareSqueezed => self.statistics.share_squeezed,
         }
     }
 

@@ -67,6 +67,8 @@ pub struct Statistics {
     pub creep_rate: f64,
     /// Share of the mass under pressure that moves faster than a fifth of its sound speed [1].
     pub share_fast: f64,
+    /// Share of the mass under pressure that gives way by more than a twentieth [1].
+    pub share_squeezed: f64,
 }
 
 /// Sums over all particles present, for checks of conservation. Of rings: of whole rings.

@@ -424,6 +424,7 @@ impl<const D: usize> Engine for Simulation<D> {
             share_ill_posed: validity.share_ill_posed,
             creep_rate: validity.creep_rate,
             share_fast: validity.share_fast,
+            share_squeezed: validity.share_squeezed,
         }
     }
 

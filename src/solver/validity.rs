@@ -14,11 +14,14 @@ const DENSE_LIMIT: f64 = 0.3;
 /// Speed over sound speed above which its own dynamic pressure, rho v^2/2, compresses material by more than 2 %.
 const FAST: f64 = 0.2;
 
+/// Pressure over rho c^2 above which material is squeezed [1]: it has given way by as much, where its grains or its water would not.
+const SQUEEZED: f64 = 0.05;
+
 /// Rounding of viscosity times shear rate.
 const ROUNDING: f64 = 1e-9;
 
-/// Figures over loaded mass, p > 0; but for `share_fast` of what has friction, p the effective one: without pressure it
-/// carries no stress, whatever its I. 0 without load.
+/// Figures over loaded mass, p > 0; but for `share_fast` and `share_squeezed` of what has friction, p the effective one: without
+/// pressure it carries no stress, whatever its I. 0 without load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Validity {
     /// Share with I > 0.3 [1].
@@ -31,6 +34,8 @@ pub struct Validity {
     /// Share of all material that moves faster than a fifth of its sound speed against walls, or against its own mean where
     /// there are none [1].
     pub share_fast: f64,
+    /// Share of all material whose pressure is above a twentieth of rho c^2 [1].
+    pub share_squeezed: f64,
 }
 
 impl<const D: usize> Solver<D> {
@@ -40,7 +45,7 @@ impl<const D: usize> Solver<D> {
         let grains = &state.grains;
         let (mut loaded, mut dilute, mut ill_posed) = (0.0, 0.0, 0.0);
         let (mut below, mut creep) = (0.0, 0.0);
-        let (mut pressed, mut fast) = (0.0, 0.0);
+        let (mut pressed, mut fast, mut squeezed) = (0.0, 0.0, 0.0);
         let frame = if self.walls.is_empty() {
             mean(&grains.velocity, &grains.mass)
         } else {
@@ -53,8 +58,12 @@ impl<const D: usize> Solver<D> {
             if self.pressure[i] > 0.0 {
                 pressed += m;
                 let v = sub(&grains.velocity[i], &frame);
-                if dot(&v, &v) > (FAST * self.sound_speed_of(material)).powi(2) {
+                let c2 = self.sound_speed_of(material).powi(2);
+                if dot(&v, &v) > FAST * FAST * c2 {
                     fast += m;
+                }
+                if self.pressure[i] > SQUEEZED * material.rest_density() * c2 {
+                    squeezed += m;
                 }
             }
             if p <= 0.0 || material.is_fluid() {
@@ -80,6 +89,7 @@ impl<const D: usize> Solver<D> {
             share_ill_posed: over(ill_posed, loaded),
             creep_rate: over(creep, below).sqrt(),
             share_fast: over(fast, pressed),
+            share_squeezed: over(squeezed, pressed),
         }
     }
 

@@ -99,7 +99,7 @@ fn devices_and_gauges_bring_their_variables() {
         gauge.front.front gauge.front.front_quantile gauge.front.validity mass.initial mass.inflow mass.outflow \
         mass.present mass.error solver.steps solver.iterations solver.step_size solver.particles energy.kinetic \
         validity.share_dilute validity.share_ill_posed validity.creep_rate validity.share_fast \
-        log.path log.required zenoh.config";
+        validity.share_squeezed log.path log.required zenoh.config";
     assert_eq!(names, expected.split_whitespace().collect::<Vec<_>>());
     let depth = table.by_name("gauge.depth.depth").unwrap();
     assert_eq!(

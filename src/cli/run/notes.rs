@@ -26,6 +26,7 @@ pub(super) fn notes(session: &Session) -> Vec<String> {
     });
     fast(session)
         .into_iter()
+        .chain(squeezed(session))
         .chain(blocked)
         .chain(remarks(scene))
         .collect()
@@ -68,6 +69,22 @@ fn fast(session: &Session) -> Option<String> {
              (numerics.sound_speed, {:.3} m/s here): so fast it is compressed by its own flow, and thin layers may gain speed.\n  \
              Give numerics.expected_speed, the largest speed that you expect, or a larger numerics.sound_speed; the run takes\n  \
              longer in proportion. See validity.share_fast over time, and docs/theory.md, \"Limits\".",
+            100.0 * share,
+            session.component.scene().numerics.sound_speed,
+        )
+    })
+}
+
+/// More was squeezed than what an impact squeezes for a moment.
+fn squeezed(session: &Session) -> Option<String> {
+    let (_, (share, time)) = extremes(session, "validity.share_squeezed")?;
+    (share > MUCH).then(|| {
+        let time = (1e6 * time).round() / 1e6;
+        format!(
+            "note: at t = {time} s {:.0} % of the mass under pressure was squeezed by more than a twentieth (numerics.sound_speed,\n  \
+             {:.3} m/s here), where grains or water would not have given way: forces and pressures are those of a spring.\n  \
+             Leave it room to go where a wall or a gate moves into it, or give a larger numerics.sound_speed; the run takes\n  \
+             longer in proportion. See validity.share_squeezed over time, and docs/theory.md, \"Limits\".",
             100.0 * share,
             session.component.scene().numerics.sound_speed,
         )

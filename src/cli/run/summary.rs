@@ -53,6 +53,7 @@ pub(super) fn json(
         "share_ill_posed": number(figures.share_ill_posed),
         "creep_rate": number(figures.creep_rate),
         "share_fast": number(figures.share_fast),
+        "share_squeezed": number(figures.share_squeezed),
         "mass": {
             "initial": number(ledger.initial),
             "inflow": number(ledger.inflow),

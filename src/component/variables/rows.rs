@@ -45,6 +45,7 @@ pub(in crate::component) enum Source {
     ShareIllPosed,
     CreepRate,
     ShareFast,
+    ShareSqueezed,
 }
 
 /// A row before it has its number.
@@ -437,6 +438,13 @@ fn totals() -> impl Iterator<Item = Row> {
             "1",
             Source::ShareFast,
             "share of the mass under pressure that moves faster than a fifth of the sound speed: give numerics.expected_speed if much does",
+        )
+        .display(PERCENT),
+        Row::output(
+            "validity.share_squeezed",
+            "1",
+            Source::ShareSqueezed,
+            "share of the mass under pressure that gives way by more than a twentieth, where its grains or its water would not: moving walls leave it too little room, or the sound speed is too low",
         )
         .display(PERCENT),
     ]

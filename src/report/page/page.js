@@ -77,7 +77,7 @@ function solver() {
 // Shares over time, and a strip each flag: when could a gauge not measure, when was a gate blocked.
 function validity() {
   const box = document.querySelector("#validity .charts");
-  for (const [name, text] of [["stats.share_dilute", "Share of mass outside the dense regime (I > 0.3)"], ["stats.share_ill_posed", "Share of mass that yields where its law is ill-posed"], ["stats.creep_rate", "Shear rate of material below its strength"], ["stats.share_fast", "Share of mass faster than a fifth of the sound speed"]]) {
+  for (const [name, text] of [["stats.share_dilute", "Share of mass outside the dense regime (I > 0.3)"], ["stats.share_ill_posed", "Share of mass that yields where its law is ill-posed"], ["stats.creep_rate", "Shear rate of material below its strength"], ["stats.share_fast", "Share of mass faster than a fifth of the sound speed"], ["stats.share_squeezed", "Share of mass squeezed by more than a twentieth"]]) {
     const column = data.columns.find((c) => c.name.endsWith(name.slice(6)));
     if (column) chart(box, text, column.unit, [{ name: text, values: column.values }]);
   }

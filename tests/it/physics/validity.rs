@@ -1,4 +1,5 @@
-//! `validity.share_fast`: what moves faster than a fifth of the sound speed, and against what.
+//! `validity.share_fast` and `validity.share_squeezed`: what moves faster than a fifth of the sound speed, and against what; what has
+//! given way by more than a twentieth.
 
 use super::Unit;
 use sandgate::scene;
@@ -66,4 +67,49 @@ until = 0.1
     let (still, moving) = (share(0.0), share(2.0 * SOUND));
     assert!(still > 0.05 && still < 1.0, "{still}");
     assert!((still - moving).abs() < 0.01, "{still} {moving}");
+}
+
+/// A piston presses a block in a trough along by `way` of its length; its share of squeezed mass.
+fn pressed(way: f64) -> f64 {
+    let text = format!(
+        r#"
+name = "oedometer"
+title = "Sand in a trough under a piston"
+dimension = 2
+[domain]
+lower = [-0.1, -0.1]
+upper = [0.3, 0.2]
+gravity = 9.81
+[numerics]
+spacing = 0.005
+sound_speed = {SOUND}
+[materials.sand]
+law = "mu_i"
+preset = "sand_08"
+[bodies.block]
+material = "sand"
+box = {{ lower = [0, 0], upper = [0.1, 0.1] }}
+[walls.trough]
+polyline = [[0, 0.1], [0, 0], [0.1, 0], [0.1, 0.1]]
+slip = "free_slip"
+[walls.lid]
+polyline = [[0.1, 0.1], [0, 0.1]]
+motion = "rigid"
+velocity = [0, -0.2]
+slip = "free_slip"
+[run]
+step = 0.005
+until = 0.1
+"#
+    );
+    let mut unit = Unit::new(&scene::parse("oedometer.toml", &text).unwrap());
+    unit.run_to(way * 0.1 / 0.2);
+    unit.get("validity.share_squeezed")
+}
+
+/// A box that is full: a strain of more than a twentieth is just that.
+#[test]
+fn what_a_piston_leaves_no_room_is_squeezed() {
+    assert!(pressed(0.02) < 0.05);
+    assert!(pressed(0.08) > 0.9);
 }
