@@ -314,8 +314,9 @@ impl Component {
     /// # Errors
     /// As [`Component::restore`].
     pub fn check_saved(&self, bytes: &[u8]) -> Result<(), Error> {
-        let (_, engine) = self.opened(bytes)?;
-        if engine.is_empty() {
+        let (life, engine) = self.opened(bytes)?;
+        // What other parameters make of the scene, an engine built for them tells.
+        if engine.is_empty() || !parameters::same_bits(&life.parameters, &self.built) {
             return Ok(());
         }
         self.engine.check(engine).map_err(Error::Snapshot)

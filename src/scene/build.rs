@@ -149,7 +149,7 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
         .bodies
         .iter()
         .map(|body| {
-            let level = body.level.map(|l| (up, l));
+            let level = body.level.map(|height| (scene.up(), height));
             lattice(&body.shape, level, scene.numerics.spacing, D, staggered)
         })
         .collect();

@@ -4,6 +4,7 @@
 //! that parts all of one from the other. What is joined beside a shelf counts as above it, as in a fluid it does.
 
 use super::{Body, Point, Scene};
+use crate::math::dot;
 use crate::shape::Lattice;
 use crate::state::CellGrid;
 
@@ -38,14 +39,14 @@ impl<'a> Loads<'a> {
         let up = self.up;
         let g = self.scene.domain.gravity[up];
         let direction = if g < 0.0 { 1.0 } else { -1.0 };
+        let upwards = self.scene.up();
         let weight = |other: &Body| {
             let (lower, upper) = other.shape.bounds();
-            let top = if direction > 0.0 {
-                other.level.map_or(upper[up], |l| l.min(upper[up]))
-            } else {
-                lower[up]
-            };
-            let height = direction * (top - place[up]);
+            let top = if direction > 0.0 { upper } else { lower };
+            let mut height = direction * (top[up] - place[up]);
+            if let Some(level) = other.level {
+                height = height.min(level - dot(&upwards, place));
+            }
             let rho = self.scene.materials[other.material].material.rest_density();
             if height > 0.0 && height.is_finite() {
                 let along = (height, self.scene.numerics.spacing);

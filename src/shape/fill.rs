@@ -2,6 +2,7 @@
 //! other row half a spacing aside.
 
 use super::Shape;
+use crate::math::{Vector, dot};
 
 /// Places and the volume each stands for.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Lattice {
     pub cell_volume: f64,
 }
 
-/// Fills a shape, below `level` on an axis if given, in `dimensions` 2 or 3.
+/// Fills a shape, below a level if given, "up" (an axis or its opposite) and the height along it, in `dimensions` 2 or 3.
 ///
 /// Boxes are filled exactly: their spacing is stretched to a whole number of rows an axis. Other shapes keep the
 /// spacing and take the places that lie inside.
@@ -22,14 +23,20 @@ pub struct Lattice {
 #[must_use]
 pub fn lattice(
     shape: &Shape,
-    level: Option<(usize, f64)>,
+    level: Option<(Vector<3>, f64)>,
     spacing: f64,
     dimensions: usize,
     staggered: bool,
 ) -> Lattice {
-    let (lower, mut upper) = shape.bounds();
-    if let Some((axis, height)) = level {
-        upper[axis] = upper[axis].min(height);
+    let (mut lower, mut upper) = shape.bounds();
+    if let Some((up, height)) = level {
+        for k in 0..3 {
+            if up[k] > 0.0 {
+                upper[k] = upper[k].min(height);
+            } else if up[k] < 0.0 {
+                lower[k] = lower[k].max(-height);
+            }
+        }
     }
     let exact = matches!(shape, Shape::Box { .. });
     let mut count = [1usize; 3];
@@ -72,7 +79,7 @@ pub fn lattice(
                         x[k] += aside([a, b, c][last]) * step[k];
                     }
                 }
-                let below = level.is_none_or(|(axis, height)| x[axis] < height);
+                let below = level.is_none_or(|(up, height)| dot(&up, &x) < height);
                 if below && (exact || shape.contains(&x)) {
                     points.push(x);
                 }

@@ -139,6 +139,22 @@ mod tests {
     }
 
     #[test]
+    fn a_level_is_a_height_along_up_whichever_way_that_is() {
+        let square = Shape::Box {
+            lower: [-0.2, -0.1, 0.0],
+            upper: [0.0, 0.1, 0.0],
+        };
+        let filled = |up, level| {
+            let l = lattice(&square, Some((up, level)), 0.004, 2, false);
+            l.cell_volume * l.points.len() as f64
+        };
+        let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 0.03, "{a} for {b}");
+        close(filled([0.0, 1.0, 0.0], 0.02), 0.2 * 0.12);
+        close(filled([0.0, -1.0, 0.0], 0.02), 0.2 * 0.12);
+        close(filled([-1.0, 0.0, 0.0], 0.05), 0.05 * 0.2);
+    }
+
+    #[test]
     fn staggered_rows_lie_half_a_spacing_aside_and_go_on_from_body_to_body() {
         let places = |lower: f64, upper: f64| {
             let shape = Shape::Box {
@@ -152,7 +168,7 @@ mod tests {
         for (a, b) in whole.iter().zip(&parts) {
             assert!((a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12);
         }
-        assert!((whole[4][0] - whole[0][0]).abs() - 0.05 < 1e-12 && whole[0][0] != whole[4][0]);
+        assert!(((whole[4][0] - whole[0][0]).abs() - 0.05).abs() < 1e-12);
         assert!(whole.iter().all(|x| x[0] > 0.02 && x[0] < 0.38));
     }
 }

@@ -9,7 +9,7 @@
 //! and lists, pairs, viscosity and motion are for dt. Sums are those of (E1) and (E7): momentum is kept pair by pair. Rings take one:
 //! beside the axis they ring at a frequency that friction, which these steps leave out, has to damp.
 
-use crate::math::{Four, Lanes, Vector, in_lanes, trace};
+use crate::math::{Four, Lanes, Vector, in_lanes};
 use crate::state::State;
 
 use super::Solver;
@@ -58,7 +58,6 @@ impl<const D: usize> Solver<D> {
             let n = state.grains.len();
             work.way.resize(n, [0.0; D]);
             work.velocity.resize(n, [0.0; D]);
-            work.divergence.resize(n, 0.0);
             work.pressure.extend_from_slice(&self.pressure);
             for done in 1..work.count {
                 let (prediction, t) = (&self.prediction, f64::from(done) * small);
@@ -96,20 +95,7 @@ impl<const D: usize> Solver<D> {
             ..
         } = work;
         let u = &*velocity;
-        self.workers
-            .blocks_read(&self.lists.blocks, divergence, |block, first, out| {
-                let mut walls = block.wall_rows.iter().peekable();
-                in_lanes!(
-                    self.arch,
-                    |lanes| for (row, o) in out.iter_mut().enumerate() {
-                        let i = first + row;
-                        *o = self.row_divergence(lanes, block, (i, row), u);
-                        if let Some(w) = walls.next_if(|w| w.row as usize == row) {
-                            *o += trace(&w.gradient(&u[i], true));
-                        }
-                    }
-                );
-            });
+        self.divergence(u, divergence);
         let grains = &mut state.grains;
         let (phase, prediction) = (&grains.phase, &self.prediction);
         self.workers.both(way, &mut grains.density, |i, way, rho| {
@@ -123,6 +109,25 @@ impl<const D: usize> Solver<D> {
             *rho = if new < least { least } else { new };
             []
         });
+    }
+
+    /// div u of the places at the start of the step [1/s].
+    pub(super) fn divergence(&self, u: &[Vector<D>], divergence: &mut Vec<f64>) {
+        divergence.resize(u.len(), 0.0);
+        self.workers
+            .blocks_read(&self.lists.blocks, divergence, |block, first, out| {
+                let mut walls = block.wall_rows.iter().peekable();
+                in_lanes!(
+                    self.arch,
+                    |lanes| for (row, o) in out.iter_mut().enumerate() {
+                        let i = first + row;
+                        *o = self.row_divergence(lanes, block, (i, row), u);
+                        if let Some(w) = walls.next_if(|w| w.row as usize == row) {
+                            *o += w.divergence(&u[i]);
+                        }
+                    }
+                );
+            });
     }
 
     /// v* over one acoustic step at the pressure that density has now.

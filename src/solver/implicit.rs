@@ -180,8 +180,14 @@ impl<const D: usize> Solver<D> {
                     [dot(r, z)]
                 });
             }
+            // The last solve's directions are no part of the state.
+            let first = iterations == 0;
             workers.each(direction, |i, d| {
-                *d = std::array::from_fn(|k| descent[i][k] + beta * d[k]);
+                *d = if first {
+                    descent[i]
+                } else {
+                    std::array::from_fn(|k| descent[i][k] + beta * d[k])
+                };
             });
             self.stress(direction, searched, false, explicit);
             let mut curvature = self.force(searched, product, false, explicit, |i, f| {

@@ -5,16 +5,11 @@
 //! is all the walls', so both ends are to be had: their mean makes density a function of place, to second order, and the jump
 //! elastic. In flight it has nothing that could press it.
 
-use crate::math::{CHUNK, Vector, dot};
+use crate::math::CHUNK;
 use crate::state::State;
 
 use super::Solver;
 use super::pair::{Block, WallRow};
-
-/// What walls do to the volume of a particle at velocity v [1/s].
-fn wall_rate<const D: usize>(w: &WallRow<D>, v: &Vector<D>) -> f64 {
-    -2.0 * (dot(v, &w.s) - w.drive)
-}
 
 /// Whether a row has no neighbours within the support.
 fn is_lone<const D: usize>(block: &Block<D>, row: usize) -> bool {
@@ -49,7 +44,7 @@ impl<const D: usize> Solver<D> {
         lone.clear();
         if self.has_fluids {
             let rate = |(i, wall): (usize, Option<&WallRow<D>>)| {
-                let rate = wall.map_or(0.0, |w| wall_rate(w, &self.viscous.velocity[i]));
+                let rate = wall.map_or(0.0, |w| w.divergence(&self.viscous.velocity[i]));
                 (state.grains.id[i], rate)
             };
             lone.extend(self.lone_rows(&state.grains.phase).map(rate));
@@ -74,7 +69,7 @@ impl<const D: usize> Solver<D> {
             };
             let known = self.lone.binary_search_by_key(&grains.id[i], |(id, _)| *id);
             if let Ok(place) = known {
-                let after = wall_rate(w, &grains.velocity[i]);
+                let after = w.divergence(&grains.velocity[i]);
                 kinematics[i].divergence += 0.5 * (self.lone[place].1 - after);
             }
         }

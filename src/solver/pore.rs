@@ -381,6 +381,8 @@ impl<const D: usize> Solver<D> {
         };
         let scalar = |i: usize, r: &[f64]| [r[i] * r[i], r[i] * over(i, r[i])];
         let [mut norm2, mut rz] = self.workers.sums(n, |i| scalar(i, residual));
+        // The last solve's directions are no part of the state.
+        direction.fill(0.0);
         let mut beta = 0.0;
         for _ in 0..MOST_ITERATIONS {
             if norm2 <= limit2 || rz <= 0.0 {

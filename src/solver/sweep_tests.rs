@@ -289,6 +289,45 @@ fn on_floor(
     (solver, state)
 }
 
+/// The end of a belt, a smooth face and a bend in it: what acoustic steps make of a velocity is what the step itself does.
+#[test]
+fn acoustic_steps_have_the_steps_own_divergence_beside_walls() {
+    let mut walls = WallPoints::default();
+    let root = 0.5f64.sqrt();
+    for n in 0..80 {
+        let place = |k: usize| (k as f64 + 0.5) * SPACING;
+        let (velocity, normal, group) = match n % 20 {
+            0..8 => ([3.0, 0.0], [0.0, 1.0], 0),
+            8..14 => ([0.0; 2], [0.0, 1.0], 1),
+            _ => ([0.0; 2], [root, root], 1),
+        };
+        walls.push(
+            [place(n % 20), -place(n / 20)],
+            velocity,
+            normal,
+            1.0,
+            group,
+        );
+    }
+    for free_slip in [false, true] {
+        walls.groups.push(GroupSpec {
+            free_slip,
+            friction: 0.0,
+            moves: false,
+            wants_force: false,
+        });
+    }
+    let plane = Geometry::Planar { width: 0.3 };
+    let (solver, state) = disordered_on::<2>(Material::sand_04(), plane, 20, walls);
+    let mut found = Vec::new();
+    solver.divergence(&state.grains.velocity, &mut found);
+    let seen = solver.lists.blocks.iter().map(|b| b.wall_rows.len());
+    assert!(seen.sum::<usize>() > 50);
+    for (found, k) in found.iter().zip(&solver.kinematics) {
+        close(*found, k.divergence, 100.0);
+    }
+}
+
 #[test]
 fn a_linear_shear_flow_over_a_floor_has_its_rate_in_every_row() {
     let (solver, state) = on_floor(0.0, |x, _| [3.0 * x[1], 0.0]);

@@ -194,10 +194,11 @@ impl<const D: usize> Solver<D> {
         friction /= area;
         let mut full = row.grip;
         let size = norm(&normal);
+        // Faces opposite each other, as near: across either.
         let across = if size > 0.0 {
             scale(1.0 / size, &normal)
         } else {
-            [0.0; D]
+            contacts.first().map_or([0.0; D], |c| c.normal)
         };
         // A flat face has no area across itself, and a bend little: there it takes no part.
         let least = dot(&across, &apply(&full, &across));

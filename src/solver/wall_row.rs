@@ -181,10 +181,7 @@ impl<const D: usize> Solver<D> {
             w.s = scale(dot(&n, &w.s), &n);
             return Some(w);
         }
-        // Divergence takes the whole velocity (a tangential sum over a flat wall vanishes); the strain takes P v.
-        let seen = trace(&wall_gradient);
-        let whole = -2.0 * (dot(vi, &w.s) - w.drive);
-        let share = (whole - seen) / D as f64;
+        let share = (w.divergence(vi) - trace(&wall_gradient)) / D as f64;
         for k in 0..D {
             sums.gradient[k][k] += share;
         }
@@ -334,6 +331,17 @@ impl<const D: usize> WallRow<D> {
             }
         }
         g
+    }
+
+    /// Part of div v that walls give (E14b): by the whole velocity, -2 (v - v_w).s, where the strain takes P v, as pressure pushes along all of s.
+    /// A belt's v_w, along its own face, opens and closes nothing.
+    #[inline(always)]
+    pub(super) fn divergence(&self, v: &Vector<D>) -> f64 {
+        if self.flat {
+            trace(&self.gradient(v, true))
+        } else {
+            -2.0 * (dot(v, &self.s) - self.drive)
+        }
     }
 
     /// Force per volume of a stress through walls: 2 K : tau, the adjoint of [`WallRow::gradient`].

@@ -1,6 +1,6 @@
 //! Gauges.
 
-use super::{Lift, dot};
+use super::{Lift, dot, minus};
 use crate::scene::raw::{
     At, Coordinates, Entry, Length, Place, Ratio, RawFront, RawGauge, RawProfile,
 };
@@ -222,17 +222,18 @@ impl Lift<'_> {
         }
     }
 
-    /// As given, or from the farthest foot to the domain's edge.
+    /// As given, as far as the domain can be long, or from the farthest foot to the domain's edge.
     fn line_length(
         &mut self,
         given: Option<&At<Length>>,
         feet: &[Point],
         up: Point,
     ) -> Option<f64> {
-        if let Some(length) = given {
-            return Some(length.value.0);
-        }
         let domain = self.domain.as_ref()?;
+        if let Some(length) = given {
+            let diagonal = super::length(minus(domain.upper, domain.lower));
+            return Some(length.value.0.min(diagonal));
+        }
         let reach = |foot: &Point| {
             let exits = (0..self.axes()).filter(|&a| up[a].abs() > 1e-9).map(|a| {
                 let side = if up[a] > 0.0 {

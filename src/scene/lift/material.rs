@@ -3,7 +3,7 @@
 use super::Lift;
 use super::friction::{FrictionKeys, friction_keys};
 use crate::material::{
-    AngleMatch, BarkerGray, ConstantFriction, FLUID_PACKING, Grains, Law, Material,
+    AngleMatch, BarkerGray, ConstantFriction, FLUID_PACKING, Friction as _, Grains, Law, Material,
     SAND_LAYER_FACTOR, Viscous,
 };
 use crate::scene::raw::{
@@ -243,6 +243,34 @@ impl Lift<'_> {
         }
     }
 
+    /// Reports what a pore fluid means nothing for.
+    fn pores_make_sense(
+        &mut self,
+        name: &At<Text>,
+        law: &Law,
+        grains: f64,
+        pores: f64,
+    ) -> Option<()> {
+        let (found, allowed, remedy) = if law.static_friction() == 0.0 {
+            (
+                "a pore fluid in a material without friction".to_owned(),
+                "in one with friction, which is made of the pressure that the fluid does not carry"
+                    .to_owned(),
+                "give a friction angle, or leave pore_fluid out: its density is that of the whole",
+            )
+        } else if grains <= pores {
+            (
+                format!("grains of {grains} kg/m^3 in a fluid of {pores} kg/m^3"),
+                "grains heavier than their pore fluid".to_owned(),
+                "correct the densities",
+            )
+        } else {
+            return Some(());
+        };
+        self.problems.report(&name.place, found, allowed, remedy);
+        None
+    }
+
     fn material(&mut self, grains: Grains, law: Law, keys: &CommonKeys<'_>) -> Option<Material> {
         let parted = keys.parted_density.as_ref()?;
         let touching = grains.phi_min / grains.phi_max;
@@ -256,6 +284,9 @@ impl Lift<'_> {
             return None;
         }
         let pore_density = self.pore_density(keys.pore_fluid)?;
+        if let Some(name) = keys.pore_fluid {
+            self.pores_make_sense(name, &law, grains.density, pore_density)?;
+        }
         Some(Material {
             grains: Grains {
                 pore_density,

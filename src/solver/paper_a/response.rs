@@ -40,7 +40,8 @@ impl<const D: usize> Solver<D> {
         self.workers.each(out, |i, response| {
             let (rho, shear) = (grains.density[i], rates[i].shear);
             let material = &self.materials[grains.phase[i] as usize];
-            *response = granular::<D>(choices, material, self.numerics.sound_speed, rho, shear);
+            let sound_speed = self.sound_speed_of(material);
+            *response = granular::<D>(choices, material, sound_speed, rho, shear);
         });
     }
 
@@ -53,18 +54,24 @@ impl<const D: usize> Solver<D> {
         let (mut acoustic, mut viscous) = (f64::INFINITY, f64::INFINITY);
         for r in &self.paper_a.response {
             acoustic = acoustic.min(h / r.sound_speed);
-            if r.viscosity > 0.0 {
-                viscous = viscous.min(0.1 * r.density * h * h / r.viscosity);
+            // A viscosity that is not a number is kept, and refused below.
+            if r.viscosity != 0.0 {
+                let bound = 0.1 * r.density * h * h / r.viscosity;
+                viscous = if bound < viscous || bound.is_nan() {
+                    bound
+                } else {
+                    viscous
+                };
             }
         }
         // A scene without particles steps as if there were some at rest.
         if acoustic.is_infinite() {
             acoustic = h / self.numerics.sound_speed;
         }
-        let bound = if viscous < acoustic {
-            (self.numerics.courant * viscous, StepBound::Viscous)
-        } else {
+        let bound = if acoustic <= viscous {
             (self.numerics.courant * acoustic, StepBound::Acoustic)
+        } else {
+            (self.numerics.courant * viscous, StepBound::Viscous)
         };
         let smallest = 1e-6 * self.numerics.longest_step();
         // Written so that a bound that is not a number is refused too.

@@ -206,7 +206,13 @@ impl<const D: usize> Solver<D> {
         self.effective.clone_from(&work.effective);
         for (i, response) in work.response.iter().enumerate() {
             let grains = &self.materials[state.grains.phase[i] as usize].grains;
-            let time = grains.inertial_time(work.effective[i]);
+            // Nothing bears nothing, whatever its rate.
+            let p = work.effective[i];
+            let time = if p > 0.0 {
+                grains.inertial_time(p)
+            } else {
+                0.0
+            };
             self.pressure.push(response.pressure);
             self.viscosity.push(response.viscosity);
             self.inertial_number.push(response.shear * time);
