@@ -102,8 +102,10 @@ impl<const D: usize> Solver<D> {
         });
         let spacing = self.numerics.spacing;
         let mut held = vec![false; plate.pieces(spacing)];
-        for x in state.grains.position.iter().filter(|x| stops(x)) {
-            held[plate.piece_of(x, spacing)] = true;
+        for (x, phase) in state.grains.position.iter().zip(&state.grains.phase) {
+            if stops(x) && !self.materials[*phase as usize].flows() {
+                held[plate.piece_of(x, spacing)] = true;
+            }
         }
         let share = held.iter().filter(|h| **h).count() as f64 / held.len() as f64;
         share >= HELD || pushed.any(|i| state.grains.position.get(i).is_some_and(squeezed))
