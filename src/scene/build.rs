@@ -161,9 +161,13 @@ fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
         let bulk = flow
             .as_ref()
             .map_or(material.rest_density(), |f| f.loose_density);
+        // Rings are not packed (`solver/pack.rs`), and nothing damps what uneven ones of a fluid do to its pressure.
+        let still = rings && material.is_fluid();
         for place in &lattice.points {
-            let position: Vector<D> =
-                std::array::from_fn(|k| place[k] + reach(k, place) * random.symmetric());
+            let position: Vector<D> = std::array::from_fn(|k| {
+                let aside = reach(k, place) * random.symmetric();
+                if still { place[k] } else { place[k] + aside }
+            });
             let mut velocity: Vector<D> = narrow(&body.velocity);
             let mut density =
                 material.density_under(loads.above(number, &three(&position)), sound_speed);

@@ -23,7 +23,7 @@ pub(super) struct Acoustic<const D: usize> {
     /// Way that each particle went in them [m].
     way: Vec<Vector<D>>,
     /// Mean pressure of the step that momentum felt [Pa].
-    pressure: Vec<f64>,
+    pub(super) pressure: Vec<f64>,
     /// u [m/s] and its divergence [1/s].
     velocity: Vec<Vector<D>>,
     divergence: Vec<f64>,

@@ -89,6 +89,7 @@ impl<const D: usize> Solver<D> {
             self.workers
                 .each(&mut work.velocity, |i, v| *v = current[i].velocity());
             self.restore_momentum(state, &mut work.velocity);
+            self.even_friction(state, dt, &mut work);
         }
         self.viscous = work;
         result
@@ -110,6 +111,7 @@ impl<const D: usize> Solver<D> {
         self.cut_slip(state);
         match self.numerics.yield_form {
             YieldForm::Capped => {
+                self.expect_friction(state, work);
                 self.hold_friction(state, &mut work.held);
                 let spent = self.conjugate_gradients(state, dt, limit, work)?;
                 self.project_friction(state, work);
@@ -123,6 +125,9 @@ impl<const D: usize> Solver<D> {
                         self.expect_plastic_stress(state, work);
                     } else {
                         self.fix_plastic_stress(state, work);
+                    }
+                    if done == 0 {
+                        self.expect_friction(state, work);
                     }
                     self.hold_friction(state, &mut work.held);
                     spent += self.conjugate_gradients(state, dt, limit, work)?;

@@ -50,6 +50,9 @@ pub(super) struct FrictionRow<const D: usize> {
     penalty: f64,
     /// mu_w p [Pa].
     bears: f64,
+    /// Whether it is loose and slides, faster than friction could stop it in the step. What holds together loosens from no wall, and the
+    /// stress of a plug, which its friction follows, is known after the solve alone.
+    slides: bool,
 }
 
 /// Who sees walls with friction; empty in scenes without.
@@ -126,6 +129,9 @@ impl<const D: usize> Contact<D> {
     }
 }
 
+/// A traction well beyond what faces bear, over mu_w p [1]: what pulls the faces together counts too.
+const FAR: f64 = 1e3;
+
 impl<const D: usize> Solver<D> {
     /// Makes the friction rows of a step from the contacts of the last sweep.
     pub(super) fn find_friction(&mut self, state: &mut State<D>, dt: f64) {
@@ -177,6 +183,7 @@ impl<const D: usize> Solver<D> {
             spread: [[0.0; D]; D],
             penalty: 0.0,
             bears: 0.0,
+            slides: false,
         };
         let mut normal = [0.0; D];
         let (mut area, mut friction) = (0.0, 0.0);
@@ -210,14 +217,16 @@ impl<const D: usize> Solver<D> {
         );
         row.spread = inverse(&full);
         let slip = norm(&row.slip(&state.grains.velocity[i]));
-        let pressure = self.effective_pressure()[row.i].max(0.0);
+        let pressure = self.pressure_on_walls(row.i).max(0.0);
         let stick = friction.min(1.0) * self.numerics.cap_time / (0.5 * self.numerics.spacing);
         row.bears = friction * pressure;
         // Friction takes some steps to come, so that what comes to rest does not turn round; but is all there in the first of
         // what slides and cannot come to rest in it.
         let slides = slip > SURELY * stopping * row.bears * trace(&row.grip);
         let begins = norm(&state.grains.wall_traction[i]) < 0.5 * row.bears;
-        let share = if slides && begins { 1.0 } else { 0.1 };
+        let holds = self.materials[state.grains.phase[i] as usize].cohesion > 0.0;
+        row.slides = slides && !holds;
+        let share = if slides && holds && begins { 1.0 } else { 0.1 };
         row.penalty = pressure * stick.min(share * friction / slip.max(f64::MIN_POSITIVE));
         row
     }
@@ -233,6 +242,26 @@ impl<const D: usize> Solver<D> {
                 *s = scale(row.bears / size, s);
             }
         }
+    }
+
+    /// Gives what slides and cannot come to rest in the step the friction of this step's pressure to start from, at the slip u that it
+    /// has: T = f P u/|P u|, s = u. The last step's would lag behind a pressure that trembles, as that of what has loosened from a
+    /// wall does, and the two do not come out even.
+    pub(super) fn expect_friction(&self, state: &mut State<D>, work: &Viscous<D>) {
+        let grains = &mut state.grains;
+        for row in self.friction.rows.iter().filter(|row| row.slides) {
+            let u = row.slip(&grains.velocity[row.i]);
+            let last = grains.stress.get(row.i);
+            let tau = last.map_or_else(|| work.stress(row.i), |tau| *tau);
+            grains.wall_traction[row.i] = self.sliding(row, &u, &tau);
+            grains.wall_slip[row.i] = u;
+        }
+    }
+
+    /// T of what slides at u: all that the faces bear against it [Pa].
+    fn sliding(&self, row: &FrictionRow<D>, u: &Vector<D>, tau: &Tensor<D>) -> Vector<D> {
+        let x = scale(FAR * row.bears / norm(u).max(f64::MIN_POSITIVE), u);
+        sub(&x, &self.beyond(row, &x, tau, 1.0))
     }
 
     /// Notes T - r s of every row, what of the next solve's tractions does not follow the velocity [Pa].
@@ -288,6 +317,11 @@ impl<const D: usize> Solver<D> {
             }
             let slip = row.slip(&work.current[i].velocity());
             let tau = work.stress(i);
+            if row.slides {
+                grains.wall_traction[i] = self.sliding(row, &slip, &tau);
+                grains.wall_slip[i] = slip;
+                continue;
+            }
             // What the last step's pressure bore and this one's does not by far is no slip (see `cut_stress`).
             let t = &grains.wall_traction[i];
             let t = sub(t, &self.beyond(row, t, &tau, SPARE));
@@ -300,6 +334,29 @@ impl<const D: usize> Solver<D> {
             let most = SPARE * row.penalty * norm(&slip);
             let share = if size > most { most / size } else { 1.0 };
             grains.wall_slip[i] = scale(share / row.penalty, &cut);
+        }
+    }
+
+    /// Makes the friction of a step of what slides that of the pressure and stress it ended with, by what the last solve took too much or
+    /// too little: friction is then mu_w times the normal force, step by step.
+    pub(super) fn even_friction(&self, state: &State<D>, dt: f64, work: &mut Viscous<D>) {
+        let Viscous { held, velocity, .. } = work;
+        for (row, held) in self.friction.rows.iter().zip(held) {
+            if !row.slides {
+                continue;
+            }
+            let (before, t) = (velocity[row.i], &state.grains.wall_traction[row.i]);
+            let slip = row.slip(&before);
+            let mut lacks: Vector<D> =
+                std::array::from_fn(|k| t[k] - held[k] - row.penalty * slip[k]);
+            let most = row.bears / norm(&lacks).max(f64::MIN_POSITIVE);
+            lacks = scale(most.min(1.0), &lacks);
+            let push = apply(&row.grip, &lacks);
+            let v = &mut velocity[row.i];
+            for k in 0..D {
+                v[k] -= dt / state.grains.mass[row.i] * push[k];
+                held[k] += lacks[k] - row.penalty * (v[k] - before[k]);
+            }
         }
     }
 
@@ -325,10 +382,16 @@ impl<const D: usize> Solver<D> {
         apply(&row.spread, &beyond)
     }
 
+    /// p between grains and walls that momentum feels over the step [Pa].
+    fn pressure_on_walls(&self, i: usize) -> f64 {
+        let mean = self.acoustic.pressure.get(i);
+        mean.map_or_else(|| self.effective_pressure()[i], |p| *p)
+    }
+
     /// mu_w (p - n.tau n) >= 0 of a contact [Pa].
     fn friction_limit(&self, c: &Contact<D>, tau: &Tensor<D>) -> f64 {
         let pull = dot(&c.normal, &apply(tau, &c.normal));
-        let pressure = self.effective_pressure()[c.i as usize] - pull;
+        let pressure = self.pressure_on_walls(c.i as usize) - pull;
         self.walls.groups[c.group as usize].friction * pressure.max(0.0)
     }
 
