@@ -171,7 +171,6 @@ pub(crate) struct Instance {
     pub(crate) texts: Vec<CString>,
     /// Text of the variables with zero bytes behind it, for sandgate_variable_info.
     pub(crate) names: Vec<[CString; 4]>,
-    threads: usize,
     broken: Option<String>,
 }
 
@@ -191,7 +190,6 @@ impl Instance {
             last_error: CString::default(),
             texts: Vec::new(),
             names: Vec::new(),
-            threads: 1,
             broken: None,
         })
     }
@@ -374,7 +372,8 @@ impl Instance {
     pub(crate) fn reset(&mut self) -> Result<(), Fault> {
         self.journal.asks(&self.component);
         if self.broken.is_some() {
-            self.renew()?;
+            self.component = self.component.anew()?;
+            self.broken = None;
         } else {
             self.component.reset()?;
         }
@@ -414,10 +413,7 @@ impl Instance {
     ) -> Result<(), Fault> {
         self.journal.asks(&self.component);
         if self.broken.is_some() {
-            let mut fresh = self.fresh()?;
-            fresh.restore(bytes)?;
-            fresh.set_stop_time(self.component.stop_time());
-            self.component = fresh;
+            self.component.restore_anew(bytes)?;
             self.broken = None;
         } else {
             self.component.restore(bytes)?;
@@ -431,7 +427,6 @@ impl Instance {
 
     /// Threads of the sweeps; 0 means all cores. Results do not depend on it.
     pub(crate) fn set_threads(&mut self, threads: usize) {
-        self.threads = threads;
         self.component.set_threads(threads);
     }
 
@@ -481,20 +476,5 @@ impl Instance {
     pub(crate) fn switch_log(&mut self, on: bool, names: &[Text]) -> Result<(), Fault> {
         let names: Result<Vec<&str>, Fault> = names.iter().map(|n| n.get("category")).collect();
         self.log.switch(on, &names?)
-    }
-
-    fn renew(&mut self) -> Result<(), Fault> {
-        self.component = self.fresh()?;
-        // As a reset does.
-        self.component.reset()?;
-        self.broken = None;
-        Ok(())
-    }
-
-    fn fresh(&self) -> Result<Component, Fault> {
-        let mut fresh = Component::new(self.component.base_scene())?;
-        fresh.set_threads(self.threads);
-        fresh.set_host_settings(self.component.host_settings().clone());
-        Ok(fresh)
     }
 }
