@@ -231,9 +231,27 @@ impl Component {
     /// do not tell a thousandth of an acoustic step from the next.
     pub fn enter_initialization(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
         lifecycle::check(Call::EnterInitialization, self.life.mode)?;
+        self.check_times("enter_initialization", start, stop)?;
+        self.life.mode = Mode::Initialization;
+        self.life.time = start;
+        self.life.stop = stop;
+        Ok(())
+    }
+
+    /// Whether a simulation may begin at `start` and end at `stop` [s], for adapters that are told before
+    /// [`Component::enter_initialization`]; `call` stands in the message.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`], as there.
+    pub fn check_times(
+        &self,
+        call: &'static str,
+        start: f64,
+        stop: Option<f64>,
+    ) -> Result<(), Error> {
         let refuse = |what: &str, found: f64, allowed: String| {
             Err(Error::BadArgument {
-                call: "enter_initialization",
+                call,
                 what: what.to_owned(),
                 found: format!("{found} s"),
                 allowed,
@@ -261,9 +279,6 @@ impl Component {
                 format!("a finite time from {start} s, the start, on"),
             );
         }
-        self.life.mode = Mode::Initialization;
-        self.life.time = start;
-        self.life.stop = stop;
         Ok(())
     }
 

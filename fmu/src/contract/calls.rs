@@ -497,6 +497,35 @@ fn every_call_of_the_c_interface_in_every_mode() {
 }
 
 #[test]
+fn fmi_2_refuses_times_where_they_are_given() {
+    let held = held(Mode::Instantiated);
+    let set_up = |start, stop| fmi2::fmi2SetupExperiment(held.handle(), 0, 0.0, start, 1, stop);
+    for (start, stop, expected) in [
+        (1e12, 2e12, "count time from a later origin"),
+        (
+            f64::NAN,
+            1.0,
+            "start time: found NaN s, allowed a finite time",
+        ),
+        (
+            2.0,
+            1.0,
+            "stop time: found 1 s, allowed a finite time from 2 s",
+        ),
+    ] {
+        assert!(!ok(set_up(start, stop)));
+        let message = held.with(|i| i.last_error.to_string_lossy().into_owned());
+        assert!(
+            message.contains("setup_experiment") && message.contains(expected),
+            "{message}"
+        );
+    }
+    assert!(ok(set_up(1.0, 2.0)));
+    assert!(ok(fmi2::fmi2EnterInitializationMode(held.handle())));
+    assert_eq!(held.time(), 1.0);
+}
+
+#[test]
 fn null_instances_are_refused_without_harm() {
     let null = || Handle::null();
     assert!(!ok(fmi2::fmi2DoStep(null(), 0.0, H, 1)));
