@@ -32,6 +32,7 @@ pub use error::{Error, Severity};
 pub use host::HostSettings;
 pub use points::{next_point, step_end};
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport, Totals};
+pub use snapshot::saved_checksum;
 pub use status::Status;
 pub use variables::{
     Causality, Start, ValueKind, ValueReference, Variability, Variable, VariableTable,
@@ -62,14 +63,6 @@ pub enum Mode {
     Terminated,
     /// A step failed: only get, restore, reset, terminate.
     Failed,
-}
-
-/// The checksum within saved bytes (SHA-256, where `snapshot` puts it; a test looks): states with the same one are the
-/// same. None if the bytes are too short.
-#[must_use]
-pub fn saved_checksum(bytes: &[u8]) -> Option<[u8; 32]> {
-    const AT: usize = 52;
-    bytes.get(AT..AT + 32)?.try_into().ok()
 }
 
 /// A steppable granular-flow unit.
@@ -127,14 +120,13 @@ impl Component {
         let table = VariableTable::of(scene);
         let threads = 1;
         let (engine, life) = Self::start(scene, &table, threads)?;
-        let fingerprint = snapshot::fingerprint(&scene.source);
         let built = life.parameters.clone();
         Ok(Self {
             base: scene.clone(),
             scene: scene.clone(),
             built,
             table,
-            fingerprint,
+            fingerprint: scene.fingerprint(),
             engine,
             threads,
             own_threads: threads,

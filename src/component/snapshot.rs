@@ -80,9 +80,10 @@ pub(super) fn split<T: DeserializeOwned>(payload: &[u8]) -> Result<(T, &[u8]), S
     Ok((decode(head)?, raw))
 }
 
-/// SHA-256 of a scene's text.
-pub(super) fn fingerprint(source: &str) -> [u8; 32] {
-    Sha256::digest(source.as_bytes()).into()
+/// The checksum within saved bytes (SHA-256): states with the same one are the same. None if the bytes are too short.
+#[must_use]
+pub fn saved_checksum(bytes: &[u8]) -> Option<[u8; 32]> {
+    bytes.get(PREFIX..HEADER)?.try_into().ok()
 }
 
 /// SHA-256, hex.
