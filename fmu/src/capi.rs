@@ -5,7 +5,7 @@ use std::ffi::{CString, c_char};
 use sandgate::component::{Causality, Mode, Start, ValueKind, Variability, Variable};
 use sandgate::scene::{self, Scene, SceneErrors};
 
-use crate::access::{Values, check_length, get_texts};
+use crate::access::{Values, get_texts};
 use crate::fault::Fault;
 use crate::guard::{
     CLedger, CStepReport, CVariable, Environment, Handle, In, Need, Out, PlainLogger, Text, shield,
@@ -290,7 +290,7 @@ pub(crate) extern "C" fn sandgate_get(
     code(instance.call("sandgate_get", Need::Sound, |i| {
         let references = references.slice(reference_count, "references")?;
         values.check(value_count, "values")?;
-        check_length(i.table(), "get", references, value_count)?;
+        i.table().check_length("get", references, value_count)?;
         let mut found = vec![0.0; value_count];
         i.get(references, &mut found)?;
         values.write(&found, "values")
