@@ -324,11 +324,12 @@ pub(crate) extern "C" fn sandgate_step(
 ) -> i32 {
     code(instance.call("sandgate_step", Need::Sound, |i| {
         let done = i.step(t, h)?;
+        let saturated = |count: u64| u32::try_from(count).unwrap_or(u32::MAX);
         report.write_if_wanted(CStepReport {
             time: done.time,
             smallest_step: done.smallest_step,
-            substeps: done.substeps,
-            iterations: done.iterations,
+            substeps: saturated(done.substeps),
+            iterations: saturated(done.iterations),
         });
         Ok(())
     }))

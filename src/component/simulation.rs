@@ -207,7 +207,7 @@ impl<const D: usize> Simulation<D> {
             },
         )?;
         report.substeps += 1;
-        report.iterations += done.iterations;
+        report.iterations += u64::from(done.iterations);
         if done.dt < report.smallest_step {
             report.smallest_step = done.dt;
             report.bound_by = done.bound;
