@@ -32,6 +32,7 @@ use crate::math::{dot, normalized};
 pub(super) use friction::values as preset_values;
 use geometry::Region;
 pub(super) use material::fluid_preset;
+pub(crate) use numerics::MOST_PARTICLES;
 
 /// The scene, or `None` if a problem was reported.
 pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Option<Scene> {
