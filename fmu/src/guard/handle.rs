@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::access::Values;
 use crate::fault::{Fault, Status};
-use crate::instance::{Guest, Instance};
+use crate::instance::Instance;
+use crate::updates::Guest;
 
 /// No call is running.
 const FREE: u8 = 0;
