@@ -101,8 +101,8 @@ typedef struct sandgate_variable {
 typedef struct sandgate_step_report {
     double time;            /* time reached: t + h, bit for bit [s] */
     double smallest_step;   /* smallest internal step [s] */
-    uint32_t substeps;      /* internal steps */
-    uint32_t iterations;    /* iterations of viscous solves, in all */
+    uint32_t substeps;      /* internal steps; UINT32_MAX for more */
+    uint32_t iterations;    /* iterations of viscous solves, in all; UINT32_MAX for more */
 } sandgate_step_report;
 
 /* Account of material; initial + inflow - outflow = present, exactly [kg]. */

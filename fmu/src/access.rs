@@ -2,7 +2,7 @@
 
 use std::ffi::{CString, c_char};
 
-use sandgate::component::{Error, ValueKind, VariableTable};
+use sandgate::component::{ValueKind, VariableTable};
 
 use crate::fault::Fault;
 use crate::guard::{Out, Plain, Text};
@@ -194,7 +194,9 @@ pub(crate) fn output_derivatives(
         )));
     }
     out.check(count, "values")?;
-    check_length(from.table(), "get_output_derivatives", references, count)?;
+    // Before room is made for what a caller claims.
+    let call = "get_output_derivatives";
+    from.table().check_length(call, references, count)?;
     let mut slopes = vec![0.0; count];
     from.slopes(references, &mut slopes)?;
     out.write(&slopes, "values")
@@ -210,6 +212,7 @@ pub(crate) fn no_variable_of_type(name: &str, count: usize) -> Result<(), Fault>
     )))
 }
 
+/// Refuses variables of other kinds, and a count that is not theirs, before room is made for what a caller claims.
 fn check(
     table: &VariableTable,
     call: &'static str,
@@ -229,37 +232,7 @@ fn check(
             )));
         }
     }
-    check_length(table, call, references, count)
-}
-
-/// Refuses unknown references, and a count that is not the variables', before room is made for what a caller claims.
-pub(crate) fn check_length(
-    table: &VariableTable,
-    call: &'static str,
-    references: &[u32],
-    count: usize,
-) -> Result<(), Fault> {
-    let mut expected = 0;
-    for reference in references {
-        let Some(row) = table.by_reference(*reference) else {
-            return Err(Fault::Component(Error::BadArgument {
-                call,
-                what: "value reference".to_owned(),
-                found: reference.to_string(),
-                allowed: format!("0 to {}", table.rows().len() - 1),
-            }));
-        };
-        expected += row.len();
-    }
-    if expected == count {
-        return Ok(());
-    }
-    Err(Fault::Component(Error::BadArgument {
-        call,
-        what: "number of values".to_owned(),
-        found: count.to_string(),
-        allowed: format!("{expected}, as many as these variables have"),
-    }))
+    Ok(table.check_length(call, references, count)?)
 }
 
 fn kind_name(kind: ValueKind) -> &'static str {

@@ -5,7 +5,7 @@ use std::ffi::{CString, c_char};
 use sandgate::component::{Causality, Mode, Start, ValueKind, Variability, Variable};
 use sandgate::scene::{self, Scene, SceneErrors};
 
-use crate::access::{Values, check_length, get_texts};
+use crate::access::{Values, get_texts};
 use crate::fault::Fault;
 use crate::guard::{
     CLedger, CStepReport, CVariable, Environment, Handle, In, Need, Out, PlainLogger, Text, shield,
@@ -290,7 +290,7 @@ pub(crate) extern "C" fn sandgate_get(
     code(instance.call("sandgate_get", Need::Sound, |i| {
         let references = references.slice(reference_count, "references")?;
         values.check(value_count, "values")?;
-        check_length(i.table(), "get", references, value_count)?;
+        i.table().check_length("get", references, value_count)?;
         let mut found = vec![0.0; value_count];
         i.get(references, &mut found)?;
         values.write(&found, "values")
@@ -324,11 +324,12 @@ pub(crate) extern "C" fn sandgate_step(
 ) -> i32 {
     code(instance.call("sandgate_step", Need::Sound, |i| {
         let done = i.step(t, h)?;
+        let saturated = |count: u64| u32::try_from(count).unwrap_or(u32::MAX);
         report.write_if_wanted(CStepReport {
             time: done.time,
             smallest_step: done.smallest_step,
-            substeps: done.substeps,
-            iterations: done.iterations,
+            substeps: saturated(done.substeps),
+            iterations: saturated(done.iterations),
         });
         Ok(())
     }))

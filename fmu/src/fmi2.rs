@@ -87,15 +87,7 @@ pub(crate) extern "C" fn fmi2SetupExperiment(
     c.call("fmi2SetupExperiment", Need::Sound, |i| {
         i.expect_mode("fmi2SetupExperiment", Mode::Instantiated)?;
         let stop = (stop_defined != 0).then_some(stop);
-        if !start.is_finite() {
-            return Err(bad_time("start time", start, "a finite time".to_owned()));
-        }
-        if let Some(stop) = stop
-            && !(stop.is_finite() && stop >= start)
-        {
-            let allowed = format!("a finite time from {start} s, the start, on");
-            return Err(bad_time("stop time", stop, allowed));
-        }
+        i.component.check_times("setup_experiment", start, stop)?;
         i.experiment = Experiment { start, stop };
         Ok(())
     })
@@ -403,15 +395,6 @@ pub(crate) extern "C" fn fmi2GetStringStatus(
     _value: Out<*const c_char>,
 ) -> Status {
     c.not_provided("fmi2GetStringStatus", "canRunAsynchronuously")
-}
-
-fn bad_time(what: &str, found: f64, allowed: String) -> Fault {
-    Fault::Component(Error::BadArgument {
-        call: "setup_experiment",
-        what: what.to_owned(),
-        found: format!("{found} s"),
-        allowed,
-    })
 }
 
 fn expect_kind(found: i32, allowed: i32, name: &str) -> Result<(), Fault> {

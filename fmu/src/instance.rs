@@ -3,18 +3,17 @@
 use std::ffi::CString;
 
 use sandgate::component::{
-    Causality, Component, Error, Intermediate, Mode, StepReport, VariableTable, Wish,
+    Causality, Component, Error, Intermediate, Mode, StepReport, VariableTable,
 };
 use sandgate::fmi::{self, FmiVersion};
 use sandgate::scene::{self, Scene};
 
 use crate::access::Values;
 use crate::fault::{Fault, Status};
-use crate::guard::{
-    Door, Environment, Handle, IntermediateUpdate3, Pause, SavedState, Text, embedded_scene, shield,
-};
-use crate::journal::{Journal, Moment};
+use crate::guard::{Door, Handle, SavedState, Text, embedded_scene, shield};
+use crate::journal::Journal;
 use crate::log::{Category, Log, text};
+use crate::updates::Updates;
 
 /// FMI 2's setupExperiment: importers may leave it out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,55 +37,6 @@ pub(crate) fn create(
             log.say(Category::Error, Status::Error, &format!("{call}: {fault}"));
             Handle::null()
         }
-    }
-}
-
-/// FMI 3: what the importer wants to know and do during steps.
-#[derive(Clone, Copy)]
-pub(crate) struct Updates {
-    pub(crate) callback: IntermediateUpdate3,
-    pub(crate) environment: Environment,
-    /// Whether it wants to set inputs.
-    pub(crate) sets_inputs: bool,
-    /// Whether a step may end early if it asks.
-    pub(crate) early_return_allowed: bool,
-}
-
-/// What the importer reaches while it is called from inside a step.
-pub(crate) struct Guest<'m, 'c> {
-    moment: &'m mut Intermediate<'c>,
-    log: &'m Log,
-    /// Inputs that were set.
-    inputs: Vec<(Vec<u32>, Vec<f64>)>,
-    /// Whether an access broke down.
-    pub(crate) is_hurt: bool,
-}
-
-impl Guest<'_, '_> {
-    /// Passes the message of a refused access on.
-    pub(crate) fn report(&self, call: &str, fault: &Fault) {
-        self.log
-            .say(Category::Error, Status::Error, &format!("{call}: {fault}"));
-    }
-}
-
-impl Values for Guest<'_, '_> {
-    fn table(&self) -> &VariableTable {
-        self.moment.component().variables()
-    }
-
-    fn get(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
-        Ok(self.moment.get(references, values)?)
-    }
-
-    fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
-        self.moment.set(references, values)?;
-        self.inputs.push((references.to_vec(), values.to_vec()));
-        Ok(())
-    }
-
-    fn slopes(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
-        Ok(self.moment.output_derivatives(references, values)?)
     }
 }
 
@@ -119,41 +69,6 @@ impl Values for Instance {
     }
 }
 
-impl Updates {
-    /// Calls the importer after an internal step.
-    fn tell(
-        self,
-        moment: &mut Intermediate<'_>,
-        log: &Log,
-        journal: &mut Journal,
-        door: &Door<'_>,
-    ) -> Wish {
-        let pause = Pause {
-            time: moment.time(),
-            set_requested: self.sets_inputs,
-            can_return_early: self.early_return_allowed,
-        };
-        let mut guest = Guest {
-            moment,
-            log,
-            inputs: Vec::new(),
-            is_hurt: false,
-        };
-        let wanted = door.open(&mut guest, || self.callback.call(self.environment, pause));
-        let wish = match wanted {
-            Some(time) if self.early_return_allowed => Wish::EndAt(time),
-            _ => Wish::GoOn,
-        };
-        let told = Moment {
-            time: pause.time,
-            inputs: guest.inputs,
-            wish,
-        };
-        journal.moment(moment.component(), &told);
-        wish
-    }
-}
-
 /// What a handle points to.
 pub(crate) struct Instance {
     pub(crate) component: Component,
@@ -171,7 +86,6 @@ pub(crate) struct Instance {
     pub(crate) texts: Vec<CString>,
     /// Text of the variables with zero bytes behind it, for sandgate_variable_info.
     pub(crate) names: Vec<[CString; 4]>,
-    threads: usize,
     broken: Option<String>,
 }
 
@@ -191,7 +105,6 @@ impl Instance {
             last_error: CString::default(),
             texts: Vec::new(),
             names: Vec::new(),
-            threads: 1,
             broken: None,
         })
     }
@@ -374,7 +287,8 @@ impl Instance {
     pub(crate) fn reset(&mut self) -> Result<(), Fault> {
         self.journal.asks(&self.component);
         if self.broken.is_some() {
-            self.renew()?;
+            self.component = self.component.anew()?;
+            self.broken = None;
         } else {
             self.component.reset()?;
         }
@@ -414,10 +328,7 @@ impl Instance {
     ) -> Result<(), Fault> {
         self.journal.asks(&self.component);
         if self.broken.is_some() {
-            let mut fresh = self.fresh()?;
-            fresh.restore(bytes)?;
-            fresh.set_stop_time(self.component.stop_time());
-            self.component = fresh;
+            self.component.restore_anew(bytes)?;
             self.broken = None;
         } else {
             self.component.restore(bytes)?;
@@ -431,7 +342,6 @@ impl Instance {
 
     /// Threads of the sweeps; 0 means all cores. Results do not depend on it.
     pub(crate) fn set_threads(&mut self, threads: usize) {
-        self.threads = threads;
         self.component.set_threads(threads);
     }
 
@@ -481,20 +391,5 @@ impl Instance {
     pub(crate) fn switch_log(&mut self, on: bool, names: &[Text]) -> Result<(), Fault> {
         let names: Result<Vec<&str>, Fault> = names.iter().map(|n| n.get("category")).collect();
         self.log.switch(on, &names?)
-    }
-
-    fn renew(&mut self) -> Result<(), Fault> {
-        self.component = self.fresh()?;
-        // As a reset does.
-        self.component.reset()?;
-        self.broken = None;
-        Ok(())
-    }
-
-    fn fresh(&self) -> Result<Component, Fault> {
-        let mut fresh = Component::new(self.component.base_scene())?;
-        fresh.set_threads(self.threads);
-        fresh.set_host_settings(self.component.host_settings().clone());
-        Ok(fresh)
     }
 }

@@ -19,3 +19,4 @@ mod journal;
 #[path = "no_journal.rs"]
 mod journal;
 mod log;
+mod updates;

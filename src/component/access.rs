@@ -3,7 +3,7 @@
 use super::engine::Ramp;
 use super::lifecycle::{self, Call};
 use super::variables::{Causality, Source, ValueKind, Variability, Variable};
-use super::{Component, Error, ValueReference};
+use super::{Component, Error, ValueReference, VariableTable};
 
 /// Share of its range by which an input may be out of it: what rounding does to a controller's limit.
 const RANGE_SLACK: f64 = 1e-9;
@@ -182,18 +182,7 @@ impl Component {
         call: &'static str,
         references: &[ValueReference],
     ) -> Result<Vec<&Variable>, Error> {
-        let find = |reference: &ValueReference| {
-            self.table.by_reference(*reference).ok_or_else(|| {
-                let last = self.table.rows().len() - 1;
-                bad(
-                    call,
-                    "value reference",
-                    &reference.to_string(),
-                    &format!("0 to {last}"),
-                )
-            })
-        };
-        references.iter().map(find).collect()
+        self.table.rows_of(call, references)
     }
 
     /// Rows of references, all of them inputs or parameters that may be set in this mode.
@@ -231,19 +220,52 @@ impl Component {
         references: &[ValueReference],
         found: usize,
     ) -> Result<(), Error> {
-        let rows = self.rows(call, references)?;
+        self.table.check_length(call, references, found)
+    }
+}
+
+impl VariableTable {
+    /// Rows of references.
+    fn rows_of(
+        &self,
+        call: &'static str,
+        references: &[ValueReference],
+    ) -> Result<Vec<&Variable>, Error> {
+        let find = |reference: &ValueReference| {
+            self.by_reference(*reference).ok_or_else(|| {
+                let last = self.rows().len() - 1;
+                bad(
+                    call,
+                    "value reference",
+                    &reference.to_string(),
+                    &format!("0 to {last}"),
+                )
+            })
+        };
+        references.iter().map(find).collect()
+    }
+
+    /// Whether these variables are numbers and have `found` flat values together: what [`Component::get`] and
+    /// [`Component::set`] refuse otherwise, for adapters that make room for values before. `call` stands in the message.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`]: unknown reference, a text, another number of values.
+    pub fn check_length(
+        &self,
+        call: &'static str,
+        references: &[ValueReference],
+        found: usize,
+    ) -> Result<(), Error> {
+        let rows = self.rows_of(call, references)?;
         if let Some(row) = rows.iter().find(|row| row.kind == ValueKind::Text) {
             return Err(bad(call, &row.name, "a text", "variables that are numbers"));
         }
         let wanted: usize = rows.iter().map(|row| row.len()).sum();
-        if wanted != found {
-            let allowed = format!(
-                "{wanted}, the number of values of the {} references",
-                references.len()
-            );
-            return Err(bad(call, "number of values", &found.to_string(), &allowed));
+        if wanted == found {
+            return Ok(());
         }
-        Ok(())
+        let allowed = format!("{wanted}, as many as these variables have");
+        Err(bad(call, "number of values", &found.to_string(), &allowed))
     }
 }
 

@@ -37,13 +37,13 @@ pub(crate) struct Inputs {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Advance {
     /// Internal steps taken.
-    pub(crate) substeps: u32,
+    pub(crate) substeps: u64,
     /// Smallest internal step [s].
     pub(crate) smallest_step: f64,
     /// What bound that one.
     pub(crate) bound_by: StepBound,
     /// Iterations of the viscous solve, summed over internal steps.
-    pub(crate) iterations: u32,
+    pub(crate) iterations: u64,
 }
 
 impl Advance {

@@ -38,11 +38,6 @@ impl Component {
         &self.host
     }
 
-    /// Takes over another component's, in any mode: for who builds a component anew in the place of one.
-    pub fn set_host_settings(&mut self, settings: HostSettings) {
-        self.host = settings;
-    }
-
     /// Sets texts, all or none. Allowed until initialisation ends.
     ///
     /// # Errors

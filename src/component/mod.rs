@@ -2,7 +2,7 @@
 //!
 //! Adapters contain no physics, no lifecycle rule and no list of variables: the lifecycle stands in `lifecycle`,
 //! the variables in `variables`, the map from errors to numbers in `status`. What is advanced stands behind
-//! `engine`; what a saved state looks like in `snapshot`.
+//! `engine`; what is saved in `life`, and what the bytes look like in `snapshot`.
 //!
 //! Fixed parameters may be set until initialisation ends; the engine is built anew for them when it is next needed
 //! (`parameters`). Inputs are held over a step (unless [`Component::set_input_derivatives`] gave a slope); outputs are sampled once
@@ -14,13 +14,16 @@ mod advance;
 mod anew;
 mod engine;
 mod error;
+mod figures;
 mod host;
+mod life;
 mod lifecycle;
 mod outputs;
 mod parameters;
 mod points;
 mod reports;
 mod sampling;
+mod saved;
 mod simulation;
 mod slopes;
 mod snapshot;
@@ -32,6 +35,7 @@ pub use error::{Error, Severity};
 pub use host::HostSettings;
 pub use points::{next_point, step_end};
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport, Totals};
+pub use snapshot::saved_checksum;
 pub use status::Status;
 pub use variables::{
     Causality, Start, ValueKind, ValueReference, Variability, Variable, VariableTable,
@@ -42,9 +46,9 @@ pub use watch::{Intermediate, Wish};
 pub use crate::solver::StaysAwake;
 
 use crate::scene::Scene;
-use engine::{Engine, Inputs, Ramp};
+use engine::Engine;
+use life::Life;
 use lifecycle::Call;
-use outputs::FlowMass;
 
 /// Rounding of a start time over the acoustic step [1].
 const MOST_ROUNDING: f64 = 1e-3;
@@ -62,14 +66,6 @@ pub enum Mode {
     Terminated,
     /// A step failed: only get, restore, reset, terminate.
     Failed,
-}
-
-/// The checksum within saved bytes (SHA-256, where `snapshot` puts it; a test looks): states with the same one are the
-/// same. None if the bytes are too short.
-#[must_use]
-pub fn saved_checksum(bytes: &[u8]) -> Option<[u8; 32]> {
-    const AT: usize = 52;
-    bytes.get(AT..AT + 32)?.try_into().ok()
 }
 
 /// A steppable granular-flow unit.
@@ -96,28 +92,6 @@ pub struct Component {
     life: Life,
 }
 
-/// The state beside the engine's: what save and restore carry with it.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-struct Life {
-    mode: Mode,
-    /// Simulated time [s].
-    time: f64,
-    /// No step may end later [s]: the orchestrator's, no part of what is saved.
-    stop: Option<f64>,
-    communication_steps: u64,
-    inputs: Inputs,
-    /// Values of the scene's adjustable numbers that were set, in their order.
-    parameters: Vec<f64>,
-    /// Whether inputs out of range are clamped instead of refused.
-    saturate_inputs: bool,
-    /// Flat output values as of the last good step; see `outputs`.
-    outputs: Vec<f64>,
-    /// Those of the step before; see `slopes`.
-    before: Vec<f64>,
-    /// Lengths of the last two steps, the last one first; 0 where there was none [s].
-    steps: [f64; 2],
-}
-
 impl Component {
     /// Builds the scene's particles, walls, devices and gauges.
     ///
@@ -126,15 +100,14 @@ impl Component {
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let table = VariableTable::of(scene);
         let threads = 1;
-        let (engine, life) = Self::start(scene, &table, threads)?;
-        let fingerprint = snapshot::fingerprint(&scene.source);
+        let (engine, life) = Life::start(scene, &table, threads)?;
         let built = life.parameters.clone();
         Ok(Self {
             base: scene.clone(),
             scene: scene.clone(),
             built,
             table,
-            fingerprint,
+            fingerprint: scene.fingerprint(),
             engine,
             threads,
             own_threads: threads,
@@ -143,37 +116,6 @@ impl Component {
             step_failed: false,
             life,
         })
-    }
-
-    /// Engine and life at the start of a scene.
-    fn start(
-        scene: &Scene,
-        table: &VariableTable,
-        threads: usize,
-    ) -> Result<(Box<dyn Engine>, Life), Error> {
-        let mut engine = engine::build(scene)?;
-        engine.set_threads(threads);
-        let held = |value: f64| Ramp { value, slope: 0.0 };
-        let inputs = Inputs {
-            gate_opening: scene.gates.iter().map(|g| held(g.start)).collect(),
-            inflow_rate: scene.inflows.iter().map(|i| held(i.rate)).collect(),
-        };
-        let before = FlowMass::now(engine.devices());
-        let outputs =
-            outputs::sample(table, engine.as_ref(), &before, 0.0).map_err(Error::Setup)?;
-        let life = Life {
-            mode: Mode::Instantiated,
-            time: 0.0,
-            stop: None,
-            communication_steps: 0,
-            inputs,
-            parameters: scene.adjustables.iter().map(|a| a.start).collect(),
-            saturate_inputs: false,
-            before: outputs.clone(),
-            outputs,
-            steps: [0.0; 2],
-        };
-        Ok((engine, life))
     }
 
     /// The scene it was built from, with the parameters it was built for.
@@ -231,9 +173,27 @@ impl Component {
     /// do not tell a thousandth of an acoustic step from the next.
     pub fn enter_initialization(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
         lifecycle::check(Call::EnterInitialization, self.life.mode)?;
+        self.check_times("enter_initialization", start, stop)?;
+        self.life.mode = Mode::Initialization;
+        self.life.time = start;
+        self.life.stop = stop;
+        Ok(())
+    }
+
+    /// Whether a simulation may begin at `start` and end at `stop` [s], for adapters that are told before
+    /// [`Component::enter_initialization`]; `call` stands in the message.
+    ///
+    /// # Errors
+    /// [`Error::BadArgument`], as there.
+    pub fn check_times(
+        &self,
+        call: &'static str,
+        start: f64,
+        stop: Option<f64>,
+    ) -> Result<(), Error> {
         let refuse = |what: &str, found: f64, allowed: String| {
             Err(Error::BadArgument {
-                call: "enter_initialization",
+                call,
                 what: what.to_owned(),
                 found: format!("{found} s"),
                 allowed,
@@ -261,9 +221,6 @@ impl Component {
                 format!("a finite time from {start} s, the start, on"),
             );
         }
-        self.life.mode = Mode::Initialization;
-        self.life.time = start;
-        self.life.stop = stop;
         Ok(())
     }
 
@@ -290,81 +247,13 @@ impl Component {
         })
     }
 
-    /// Everything that can change a later bit, as bytes: versioned header, scene fingerprint, checksum. Allowed in
-    /// every mode; a failed component saves as failed. The stop time is the orchestrator's and not among it.
-    ///
-    /// # Errors
-    /// [`Error::Snapshot`].
-    pub fn save(&self) -> Result<Vec<u8>, Error> {
-        let payload = self.payload().map_err(Error::Snapshot)?;
-        Ok(snapshot::seal(&self.fingerprint, &payload))
-    }
-
-    /// Goes back (or forth) to saved bytes, also from another process; the stop time stays. Allowed in every mode.
-    ///
-    /// # Errors
-    /// [`Error::Snapshot`] for bytes of another version or scene, cut short or corrupt; the component stays as it was.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        let (life, engine) = self.opened(bytes)?;
-        self.take_over(life, engine)
-    }
-
-    /// Whether [`Component::restore`] would take these bytes, as far as can be told without building anything.
-    ///
-    /// # Errors
-    /// As [`Component::restore`].
-    pub fn check_saved(&self, bytes: &[u8]) -> Result<(), Error> {
-        let (life, engine) = self.opened(bytes)?;
-        // What other parameters make of the scene, an engine built for them tells.
-        if engine.is_empty() || !parameters::same_bits(&life.parameters, &self.built) {
-            return Ok(());
-        }
-        self.engine.check(engine).map_err(Error::Snapshot)
-    }
-
-    /// Life and bytes of the engine of a saved state that fits this component's table.
-    fn opened<'b>(&self, bytes: &'b [u8]) -> Result<(Life, &'b [u8]), Error> {
-        let payload = snapshot::open(&self.fingerprint, bytes)?;
-        let (life, engine): (Life, &[u8]) = snapshot::split(payload).map_err(Error::Snapshot)?;
-        let counts = |l: &Life| {
-            [
-                l.inputs.gate_opening.len(),
-                l.inputs.inflow_rate.len(),
-                l.outputs.len(),
-                l.before.len(),
-                l.parameters.len(),
-            ]
-        };
-        if counts(&life) != counts(&self.life) {
-            return Err(Error::Snapshot(format!(
-                "found {:?} gates, inflows, output values (twice) and parameters, allowed {:?} (this scene's)",
-                counts(&life),
-                counts(&self.life)
-            )));
-        }
-        Ok((life, engine))
-    }
-
-    /// The state without header and stop time: length of life, life, engine. While parameters wait for their engine it
-    /// is that of the start, and nothing stands for it.
-    fn payload(&self) -> Result<Vec<u8>, String> {
-        let life = Life {
-            stop: None,
-            ..self.life.clone()
-        };
-        if self.is_unsettled() {
-            return snapshot::join(&life, &[]);
-        }
-        snapshot::join(&life, &self.engine.save()?)
-    }
-
     /// Back to Instantiated with start values, as after `new` (threads as [`Component::set_threads`] gave them). Allowed in
     /// every mode.
     ///
     /// # Errors
     /// [`Error::Setup`]; the component stays as it was.
     pub fn reset(&mut self) -> Result<(), Error> {
-        (self.engine, self.life) = Self::start(&self.base, &self.table, self.own_threads)?;
+        (self.engine, self.life) = Life::start(&self.base, &self.table, self.own_threads)?;
         self.threads = self.own_threads;
         self.scene = self.base.clone();
         self.built = self.life.parameters.clone();
@@ -459,14 +348,5 @@ impl Component {
     fn use_threads(&mut self, threads: usize) {
         self.threads = threads;
         self.engine.set_threads(threads);
-    }
-
-    /// SHA-256 of the state (without header and stop time), hex: two components with the same hash go on with the
-    /// same bits.
-    #[must_use]
-    pub fn state_hash(&self) -> String {
-        // A state too large to encode has no hash; its error text stands in, so that it equals no other state's.
-        self.payload()
-            .map_or_else(|why| why, |payload| snapshot::hash(&payload))
     }
 }

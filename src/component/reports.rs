@@ -10,13 +10,13 @@ pub struct StepReport {
     /// Whether a watcher ended the step before t + h.
     pub ended_early: bool,
     /// Internal steps taken.
-    pub substeps: u32,
+    pub substeps: u64,
     /// Smallest internal step [s].
     pub smallest_step: f64,
     /// What bound it.
     pub bound_by: StepBound,
     /// Iterations of the viscous solve, summed over internal steps.
-    pub iterations: u32,
+    pub iterations: u64,
 }
 
 /// Exact account of material: initial + inflow - outflow = present, in f64, at every time.

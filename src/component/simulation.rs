@@ -3,24 +3,15 @@
 use std::cell::OnceCell;
 use std::sync::OnceLock;
 
-use serde::{Deserialize, Serialize};
-
 use super::engine::{Advance, Devices, Engine, GateState, InflowState, Inputs, SolverError};
 use super::sampling::{Sampler, Shows, Sight};
-use super::snapshot;
-use super::{Error, MassLedger, ParticleView, Statistics, Totals};
+use super::saved::Saved;
+use super::{Error, MassLedger, ParticleView, Statistics, Totals, figures};
 use crate::gauge::{Reading, View};
-use crate::math::{Geometry, Vector, dot};
+use crate::math::{Geometry, Vector};
 use crate::scene::{self, Dimension, PressureQuantity, Scene};
 use crate::solver::{Solver, StaysAwake, StepInputs, three};
-use crate::state::{CellGrid, Grains, RestState, State};
-
-/// What is saved: the state, and what sections have counted.
-#[derive(Serialize, Deserialize)]
-struct Saved<const D: usize> {
-    state: State<D>,
-    crossed: Vec<f64>,
-}
+use crate::state::{CellGrid, RestState, State};
 
 /// Particles that gauges see: of one material, or all, with one kind of pressure.
 struct Shown<const D: usize> {
@@ -207,7 +198,7 @@ impl<const D: usize> Simulation<D> {
             },
         )?;
         report.substeps += 1;
-        report.iterations += done.iterations;
+        report.iterations += u64::from(done.iterations);
         if done.dt < report.smallest_step {
             report.smallest_step = done.dt;
             report.bound_by = done.bound;
@@ -232,30 +223,6 @@ impl<const D: usize> Simulation<D> {
         SolverError {
             time: self.state.time,
             what: error.to_string(),
-        }
-    }
-
-    /// Takes saved bytes apart; refuses what does not fit this scene.
-    fn decoded(&self, bytes: &[u8]) -> Result<Saved<D>, String> {
-        let saved: Saved<D> = snapshot::decode(bytes)?;
-        let state = &saved.state;
-        let share = |x: f64| (0.0..=1.0).contains(&x);
-        let options = |g: &Grains<D>| [g.implicit, g.exact_yield, g.wall_friction, g.saturated];
-        let fits = options(&state.grains) == options(&self.state.grains)
-            && state.grains.is_consistent(self.solver.materials())
-            && state
-                .gates
-                .iter()
-                .all(|g| share(g.opening) && share(g.listed_opening) && g.rate.is_finite())
-            && saved.state.gates.len() == self.state.gates.len()
-            && saved.state.inflows.len() == self.state.inflows.len()
-            && saved.state.drained.len() == self.state.drained.len()
-            && saved.state.impulse.len() == self.state.impulse.len()
-            && saved.crossed.len() == self.sampler.crossed().len();
-        if fits {
-            Ok(saved)
-        } else {
-            Err("its devices, gauges or particles do not fit this scene".to_owned())
         }
     }
 
@@ -362,14 +329,11 @@ impl<const D: usize> Engine for Simulation<D> {
     }
 
     fn save(&self) -> Result<Vec<u8>, String> {
-        snapshot::encode(&Saved {
-            state: self.state.clone(),
-            crossed: self.sampler.crossed(),
-        })
+        Saved::encode(&self.state, &self.sampler)
     }
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), String> {
-        let saved = self.decoded(bytes)?;
+        let saved = Saved::decode(bytes, &self.state, &self.solver, &self.sampler)?;
         // As many as there are sections, as was just checked.
         self.sampler.set_crossed(&saved.crossed);
         self.state = saved.state;
@@ -380,95 +344,27 @@ impl<const D: usize> Engine for Simulation<D> {
     }
 
     fn check(&self, bytes: &[u8]) -> Result<(), String> {
-        self.decoded(bytes).map(drop)
+        Saved::decode(bytes, &self.state, &self.solver, &self.sampler).map(drop)
     }
 
     fn ledger(&self) -> MassLedger {
-        MassLedger {
-            initial: self.state.initial_mass,
-            // An empty sum of floats is -0; no flow is +0.
-            inflow: self
-                .state
-                .inflows
-                .iter()
-                .fold(0.0, |sum, i| sum + i.admitted),
-            outflow: self.state.drained.iter().fold(0.0, |sum, mass| sum + mass),
-            present: self.state.grains.present_mass(),
-        }
+        figures::ledger(&self.state)
+    }
+
+    fn statistics(&self) -> Statistics {
+        figures::statistics(&self.state, &self.solver)
+    }
+
+    fn totals(&self) -> Totals {
+        figures::totals(&self.state.grains)
+    }
+
+    fn particles(&self) -> ParticleView {
+        figures::particles(&self.state, &self.solver)
     }
 
     fn steps(&self) -> u64 {
         self.state.steps
-    }
-
-    fn statistics(&self) -> Statistics {
-        let grains = &self.state.grains;
-        let (mut energy, mut fastest) = (0.0, 0.0f64);
-        let mut particles = 0;
-        for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
-            let v2 = dot(&grains.velocity[i], &grains.velocity[i]);
-            particles += 1;
-            energy += 0.5 * grains.mass[i] * v2;
-            fastest = fastest.max(v2.sqrt());
-        }
-        let validity = self.solver.validity(&self.state);
-        Statistics {
-            communication_steps: 0,
-            steps: self.state.steps,
-            iterations: self.state.iterations,
-            particles,
-            step_size: self.state.step_size,
-            kinetic_energy: energy,
-            max_speed: fastest,
-            share_dilute: validity.share_dilute,
-            share_ill_posed: validity.share_ill_posed,
-            creep_rate: validity.creep_rate,
-            share_fast: validity.share_fast,
-            share_squeezed: validity.share_squeezed,
-        }
-    }
-
-    fn totals(&self) -> Totals {
-        let grains = &self.state.grains;
-        let mut totals = Totals {
-            lower: [f64::INFINITY; 3],
-            upper: [f64::NEG_INFINITY; 3],
-            ..Totals::default()
-        };
-        for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
-            let (x, v, m) = (
-                three(&grains.position[i]),
-                three(&grains.velocity[i]),
-                grains.mass[i],
-            );
-            let v2 = dot(&v, &v);
-            totals.momentum_scale += m * v2.sqrt();
-            totals.kinetic_energy += 0.5 * m * v2;
-            for k in 0..3 {
-                totals.momentum[k] += m * v[k];
-                totals.moment[k] += m * x[k];
-                totals.lower[k] = totals.lower[k].min(x[k]);
-                totals.upper[k] = totals.upper[k].max(x[k]);
-            }
-        }
-        totals
-    }
-
-    fn particles(&self) -> ParticleView {
-        let grains = &self.state.grains;
-        let mut view = ParticleView::default();
-        for i in (0..grains.len()).filter(|&i| !grains.drained[i]) {
-            view.position
-                .push(three(&grains.position[i]).map(|c| c as f32));
-            view.velocity
-                .push(three(&grains.velocity[i]).map(|c| c as f32));
-            view.pressure.push(self.solver.pressure()[i] as f32);
-            view.inertial_number
-                .push(self.solver.inertial_number()[i] as f32);
-            view.phase.push(grains.phase[i]);
-            view.asleep.push(u8::from(self.state.rest.asleep));
-        }
-        view
     }
 
     fn stays_awake(&self) -> Option<StaysAwake> {

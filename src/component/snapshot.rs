@@ -5,6 +5,7 @@
 //! bincode of state only; gauges' definitions and scenes never travel in it. What is in it, `Component` decides.
 
 use super::Error;
+use crate::scene::MOST_PARTICLES;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
@@ -17,8 +18,17 @@ const VERSION: u32 = 6;
 const PREFIX: usize = 8 + 4 + 32 + 8;
 /// Bytes before the payload.
 const HEADER: usize = PREFIX + 32;
-/// Largest payload: 50 million particles at 300 bytes each. Keeps a damaged length from claiming all memory.
-const LIMIT: usize = 16 << 30;
+/// Bytes of a particle in space that keeps all that can be kept; a test counts them.
+const PARTICLE: u64 = 362;
+/// Largest payload [bytes]: twice the particles that a scene may begin with, as inflows bring more. A damaged length
+/// claims no more than that.
+const MOST: u64 = 2 * MOST_PARTICLES as u64 * PARTICLE;
+/// The same, or all that an address can tell.
+const LIMIT: usize = if MOST < usize::MAX as u64 {
+    MOST as usize
+} else {
+    usize::MAX
+};
 
 /// Little-endian, fixed width, bounded.
 fn config() -> impl bincode::config::Config {
@@ -80,9 +90,10 @@ pub(super) fn split<T: DeserializeOwned>(payload: &[u8]) -> Result<(T, &[u8]), S
     Ok((decode(head)?, raw))
 }
 
-/// SHA-256 of a scene's text.
-pub(super) fn fingerprint(source: &str) -> [u8; 32] {
-    Sha256::digest(source.as_bytes()).into()
+/// The checksum within saved bytes (SHA-256): states with the same one are the same. None if the bytes are too short.
+#[must_use]
+pub fn saved_checksum(bytes: &[u8]) -> Option<[u8; 32]> {
+    bytes.get(PREFIX..HEADER)?.try_into().ok()
 }
 
 /// SHA-256, hex.
@@ -178,6 +189,7 @@ fn hex(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::state::Grains;
 
     const SCENE: [u8; 32] = [7; 32];
 
@@ -236,6 +248,21 @@ mod tests {
             message.contains("another scene") && message.contains("080808080808"),
             "{message}"
         );
+    }
+
+    #[test]
+    fn no_particle_takes_more_room_than_the_limit_is_made_for() {
+        let mut grains = Grains::<3> {
+            implicit: true,
+            exact_yield: true,
+            wall_friction: true,
+            saturated: true,
+            ..Grains::default()
+        };
+        let none = encode(&grains).unwrap().len();
+        grains.push(0, 0, [0.0; 3], [0.0; 3], 1.0, 1.0);
+        assert!(grains.is_consistent(1));
+        assert_eq!((encode(&grains).unwrap().len() - none) as u64, PARTICLE);
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The table of variables: the only list. FMI XML, C names, Zenoh keys, MCAP channels and docs are made from it.
 //!
-//! Here: what a row is. `rows` holds the list itself, `document` writes docs/variables.md from it.
+//! Here: what a row is. `rows` holds the list itself (gauges' rows are in `gauges`), `document` writes docs/variables.md from it.
 
 mod document;
+mod gauges;
 pub(super) mod host;
 mod rows;
 

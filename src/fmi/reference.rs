@@ -64,7 +64,7 @@ pub(super) fn reference(scene: &Scene, extent: Extent) -> Result<Reference, Erro
             break;
         };
         let report = component.do_step(time, next - time)?;
-        let sweeps = SWEEPS * f64::from(report.substeps) + f64::from(report.iterations);
+        let sweeps = SWEEPS * report.substeps as f64 + report.iterations as f64;
         work += sweeps * component.statistics().particles as f64;
     }
     Ok(Reference {

@@ -4,6 +4,8 @@
 //! half-open in every sense (a particle on its plane counts as past it, an edge belongs to one side), so a crossing
 //! is counted once, whatever the steps. Particle masses are multiples of a power of two, hence the sum is exact.
 
+use crate::math::dot;
+
 /// A segment (planar) or parallelogram (space) and the mass that went through it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing<const D: usize> {
@@ -120,10 +122,6 @@ impl<const D: usize> Crossing<D> {
             None => difference,
         }
     }
-}
-
-fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (0..D).map(|k| a[k] * b[k]).sum()
 }
 
 /// Dual vectors within the span of one or two edges: dual_i . edge_k = 1 if i = k, else 0.

@@ -61,6 +61,29 @@ pub fn norm<const D: usize>(a: &Vector<D>) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// Euclidean norm by `hypot`: no square over- or underflows, and bits differ from those of [`norm`], which hot loops take.
+#[must_use]
+pub fn length<const D: usize>(a: &Vector<D>) -> f64 {
+    a.iter().fold(0.0_f64, |length, c| length.hypot(*c))
+}
+
+/// a over its [`length`], if that is finite and not 0.
+#[must_use]
+pub fn normalized<const D: usize>(a: &Vector<D>) -> Option<Vector<D>> {
+    let size = length(a);
+    (size > 0.0 && size.is_finite()).then(|| a.map(|c| c / size))
+}
+
+/// a x b.
+#[must_use]
+pub fn cross(a: &Vector<3>, b: &Vector<3>) -> Vector<3> {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
 /// Adds s a (x) b to t.
 #[inline(always)]
 pub fn add_outer<const D: usize>(t: &mut Tensor<D>, s: f64, a: &Vector<D>, b: &Vector<D>) {
@@ -177,6 +200,27 @@ mod tests {
                 assert!((v - f64::from(u8::from(r == c))).abs() < 1e-14);
             }
         }
+    }
+
+    #[test]
+    fn lengths_neither_over_nor_underflow_and_zero_has_no_direction() {
+        for size in [1e-200, 1.0, 1e200] {
+            let a = [2.0 * size, -3.0 * size, 6.0 * size];
+            assert!((length(&a) / size - 7.0).abs() < 1e-14);
+            assert!(normalized(&a).is_some_and(|n| (norm(&n) - 1.0).abs() < 1e-15));
+        }
+        assert_eq!(normalized(&[0.0, -0.0]), None);
+        assert_eq!(normalized(&[f64::INFINITY, 1.0]), None);
+    }
+
+    #[test]
+    fn a_cross_product_is_right_handed_and_normal_to_both() {
+        assert_eq!(cross(&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0]), [0.0, 0.0, 1.0]);
+        let (a, b) = ([1.0, 2.0, 3.0], [-2.0, 0.5, 4.0]);
+        assert_eq!(
+            (dot(&cross(&a, &b), &a), dot(&cross(&a, &b), &b)),
+            (0.0, 0.0)
+        );
     }
 
     #[test]

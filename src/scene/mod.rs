@@ -22,6 +22,7 @@ pub use adjust::Adjustable;
 pub use build::{build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
 pub use gates::BehindWall;
+pub(crate) use lift::MOST_PARTICLES;
 pub use quality::Quality;
 pub use reference::{reference_markdown, schema};
 pub use types::*;

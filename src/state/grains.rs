@@ -24,14 +24,15 @@ pub struct Grains<const D: usize> {
     /// Bulk density rho [kg/m^3].
     pub density: Vec<f64>,
     /// Bulk density at the last sweep over pairs, before the step's own change: pair coefficients are made of it
-    /// [kg/m^3].
+    /// [kg/m^3]. Scheme `paper_b`: the one at the start of the step.
     pub swept_density: Vec<f64>,
     /// Mass m, a multiple of a power of two [kg].
     pub mass: Vec<f64>,
     /// Shear rate relaxed in time, for the equation of state [1/s].
     pub relaxed_shear: Vec<f64>,
     /// Velocity change of the last viscous solve over its step: its next first guess. Scheme `paper_a`: the whole
-    /// acceleration at the last half step, from which the next is predicted [m/s^2].
+    /// acceleration at the last half step, from which the next is predicted; scheme `paper_b`: that at
+    /// the start of the step [m/s^2].
     #[serde(with = "flat")]
     pub viscous_acceleration: Vec<Vector<D>>,
     /// How it changed over the last step [m/s^2]; empty where viscosity is explicit.

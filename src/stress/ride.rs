@@ -164,7 +164,7 @@ impl<'a> Ride<'a> {
         self.cpu += spent().map_or(0.0, |s| s.as_secs_f64());
         let report = report?;
         self.index += 1;
-        self.internal += u64::from(report.substeps);
+        self.internal += report.substeps;
         self.over |= self.internal >= self.most_steps || self.is_hung();
         Ok(Done { asked, cut, report })
     }

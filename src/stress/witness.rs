@@ -192,7 +192,7 @@ impl<'a> Witness<'a> {
             && !fell_asleep
         {
             // What the solve leaves of its residual in each internal step goes to the walls unseen.
-            let steps = f64::from(done.report.substeps);
+            let steps = done.report.substeps as f64;
             let allowed = if self.balance.has_walls() {
                 MOMENTUM * scale
                     + SOLVE * self.scene.numerics.solver_tolerance * steps * found.moving
@@ -229,7 +229,7 @@ impl<'a> Witness<'a> {
     /// Counts a step for the figures.
     pub(super) fn count(&mut self, done: &Done) {
         self.figures.communication_steps += 1;
-        self.figures.internal_steps += u64::from(done.report.substeps);
+        self.figures.internal_steps += done.report.substeps;
     }
 }
 

@@ -100,15 +100,16 @@ pub fn gauge(
 pub fn step_stats(component: &Component, report: Option<&StepReport>, sequence: u64) -> StepStats {
     let figures = component.statistics();
     let ledger = component.ledger();
+    let saturated = |count: u64| u32::try_from(count).unwrap_or(u32::MAX);
     StepStats {
         timestamp: Some(timestamp(component.time())),
         time: component.time(),
         step: figures.communication_steps,
         sequence,
-        substeps: report.map_or(0, |r| r.substeps),
+        substeps: report.map_or(0, |r| saturated(r.substeps)),
         smallest_step: report.map_or(0.0, |r| r.smallest_step),
         bound_by: report.map_or("", |r| r.bound_by.name()).to_owned(),
-        iterations: report.map_or(0, |r| r.iterations),
+        iterations: report.map_or(0, |r| saturated(r.iterations)),
         particles: figures.particles,
         step_size: figures.step_size,
         kinetic_energy: figures.kinetic_energy,

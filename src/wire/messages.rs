@@ -190,7 +190,7 @@ messages! {
         /// Counts these messages from 0.
         #[prost(uint64, tag = "4")]
         pub sequence: u64,
-        /// Internal steps of this communication step.
+        /// Internal steps of this communication step; 4294967295 for more.
         #[prost(uint32, tag = "5")]
         pub substeps: u32,
         /// Smallest of them [s].
@@ -199,7 +199,7 @@ messages! {
         /// What bound it: "acoustic", "motion", "viscous", "communication"; empty before the first step.
         #[prost(string, tag = "7")]
         pub bound_by: String,
-        /// Iterations of the viscous solve, summed over the internal steps.
+        /// Iterations of the viscous solve, summed over the internal steps; 4294967295 for more.
         #[prost(uint32, tag = "8")]
         pub iterations: u32,
         /// Particles present.

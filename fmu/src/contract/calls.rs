@@ -15,7 +15,13 @@ use crate::fault::Status;
 use crate::guard::{Handle, In, Need, Out, StateHandle, StateSlot, Text};
 use crate::instance::Instance;
 use crate::log::{Log, Sink};
-use crate::{capi, fmi2, fmi3};
+use crate::{capi, fmi2};
+
+/// All functions of FMI 3.
+mod fmi3 {
+    pub(super) use crate::fmi3::absent::*;
+    pub(super) use crate::fmi3::*;
+}
 
 /// A refusal that takes longer hangs an orchestrator.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -465,7 +471,13 @@ fn every_call_of_fmi_2_in_every_mode() {
 fn every_call_of_fmi_3_in_every_mode() {
     let calls = calls_of_fmi3();
     assert_eq!(
-        missing(&calls, include_str!("../fmi3.rs")),
+        missing(
+            &calls,
+            concat!(
+                include_str!("../fmi3.rs"),
+                include_str!("../fmi3/absent.rs")
+            )
+        ),
         [
             "fmi3FreeInstance",
             "fmi3GetVersion",
@@ -494,6 +506,35 @@ fn every_call_of_the_c_interface_in_every_mode() {
         ]
     );
     check(&calls);
+}
+
+#[test]
+fn fmi_2_refuses_times_where_they_are_given() {
+    let held = held(Mode::Instantiated);
+    let set_up = |start, stop| fmi2::fmi2SetupExperiment(held.handle(), 0, 0.0, start, 1, stop);
+    for (start, stop, expected) in [
+        (1e12, 2e12, "count time from a later origin"),
+        (
+            f64::NAN,
+            1.0,
+            "start time: found NaN s, allowed a finite time",
+        ),
+        (
+            2.0,
+            1.0,
+            "stop time: found 1 s, allowed a finite time from 2 s",
+        ),
+    ] {
+        assert!(!ok(set_up(start, stop)));
+        let message = held.with(|i| i.last_error.to_string_lossy().into_owned());
+        assert!(
+            message.contains("setup_experiment") && message.contains(expected),
+            "{message}"
+        );
+    }
+    assert!(ok(set_up(1.0, 2.0)));
+    assert!(ok(fmi2::fmi2EnterInitializationMode(held.handle())));
+    assert_eq!(held.time(), 1.0);
 }
 
 #[test]

@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use crate::access::Values;
 use crate::fault::{Fault, Status};
-use crate::instance::{Guest, Instance};
+use crate::instance::Instance;
+use crate::updates::Guest;
 
 /// No call is running.
 const FREE: u8 = 0;
@@ -251,6 +252,21 @@ mod tests {
         handle.call("mode", Need::Sound, |i| Ok(i.component.mode()))
     }
 
+    /// `solver.threads`, set before if one is wanted.
+    fn threads(handle: &Handle, wanted: Option<f64>) -> f64 {
+        let now = handle.call("threads", Need::Sound, |i| {
+            let row = i.component.variables().by_name("solver.threads");
+            let reference = [row.expect("every scene has it").reference];
+            if let Some(wanted) = wanted {
+                i.component.set(&reference, &[wanted])?;
+            }
+            let mut now = [0.0];
+            i.component.get(&reference, &mut now)?;
+            Ok(now[0])
+        });
+        now.expect("sound")
+    }
+
     fn break_down(handle: &Handle) {
         let broken: Result<(), Fault> = handle.call("break", Need::Sound, |_| panic!("on purpose"));
         assert!(matches!(broken, Err(Fault::Broken(how)) if how.contains("on purpose")));
@@ -260,10 +276,11 @@ mod tests {
     fn a_panic_ends_at_the_wall_and_reset_or_a_state_puts_things_right() {
         let (one, other) = (handle(), handle());
         let saved = one.call("save", Need::Sound, |i| {
-            i.component.initialize(0.0, None)?;
+            i.component.initialize(0.0, Some(9.0))?;
             i.save()
         });
         let saved = saved.expect("sound");
+        threads(&one, Some(2.0));
         break_down(&one);
         let refused = mode(&one).expect_err("broken").to_string();
         assert!(refused.contains("on purpose") && refused.contains("reset the instance"));
@@ -274,10 +291,14 @@ mod tests {
         let set = one.call("set", Need::Any, |i| i.restore(&saved.bytes, None));
         assert!(set.is_ok());
         assert_eq!(mode(&one).expect("sound again"), Mode::Stepping);
+        assert_eq!(threads(&one, None), 2.0);
+        let stop = one.call("stop", Need::Sound, |i| Ok(i.component.stop_time()));
+        assert_eq!(stop.expect("sound"), Some(9.0));
 
         break_down(&one);
         assert!(one.call("reset", Need::Any, Instance::reset).is_ok());
         assert_eq!(mode(&one).expect("sound again"), Mode::Instantiated);
+        assert_eq!(threads(&one, None), 1.0);
         one.free();
         other.free();
     }

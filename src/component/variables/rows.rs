@@ -1,10 +1,10 @@
-//! The list: which variables each kind of device and gauge brings, with units, ranges and words.
+//! The list: which variables each kind of device brings, with units, ranges and words. Those of gauges stand in `gauges`.
 //!
 //! To add a variable: one row here, its [`Source`], and the value in `component::outputs`. References count from
 //! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals.
 
-use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable};
-use crate::scene::{Adjustable, Gate, Gauge, GaugeKind, Inflow, Outflow, PressureQuantity, Scene};
+use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable, gauges};
+use crate::scene::{Adjustable, Gate, Inflow, Outflow, Scene};
 
 /// Where a row's value comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,14 +49,14 @@ pub(in crate::component) enum Source {
 }
 
 /// A row before it has its number.
-struct Row {
-    variable: Variable,
-    source: Source,
+pub(super) struct Row {
+    pub(super) variable: Variable,
+    pub(super) source: Source,
 }
 
 impl Row {
     /// A real output.
-    fn output(
+    pub(super) fn output(
         name: impl Into<String>,
         unit: &'static str,
         source: Source,
@@ -94,18 +94,21 @@ impl Row {
         row.within(0.0, most)
     }
 
-    fn kind(mut self, kind: ValueKind) -> Self {
+    /// Of this kind, and so changing by jumps.
+    pub(super) fn kind(mut self, kind: ValueKind) -> Self {
         self.variable.kind = kind;
         self.variable.variability = Variability::Discrete;
         self
     }
 
-    fn display(mut self, unit: Option<(&'static str, f64)>) -> Self {
+    /// With the unit people like to see.
+    pub(super) fn display(mut self, unit: Option<(&'static str, f64)>) -> Self {
         self.variable.display_unit = unit;
         self
     }
 
-    fn within(mut self, least: f64, most: f64) -> Self {
+    /// With its smallest and largest value.
+    pub(super) fn within(mut self, least: f64, most: f64) -> Self {
         self.variable.range = Some((least, most));
         self
     }
@@ -134,7 +137,7 @@ pub(super) fn list(scene: &Scene) -> VariableTable {
         outflow_rows(i, outflow).for_each(&mut add);
     }
     for (i, gauge) in scene.gauges.iter().enumerate() {
-        gauge_rows(scene, i, gauge).into_iter().for_each(&mut add);
+        gauges::rows(scene, i, gauge).into_iter().for_each(&mut add);
     }
     totals().for_each(&mut add);
     number_elements(&mut table);
@@ -268,136 +271,6 @@ fn outflow_rows(i: usize, outflow: &Outflow) -> impl Iterator<Item = Row> {
         ),
     ]
     .into_iter()
-}
-
-fn gauge_rows(scene: &Scene, i: usize, gauge: &Gauge) -> Vec<Row> {
-    let name = &gauge.name;
-    let length = length_display(scene);
-    // A foot may be moved, and its line with it, but not out of the domain.
-    let domain = &scene.domain;
-    let across = |up: &[f64; 3]| -> f64 {
-        let extent = |a: usize| (domain.upper[a] - domain.lower[a]) * up[a].abs();
-        (0..scene.dimension.axes()).map(extent).sum()
-    };
-    let seen = gauge.material.map(|m| &scene.materials[m].name);
-    let of = seen.map_or(String::new(), |name| format!(" (of {name} alone)"));
-    let reading = |suffix: &str, unit: &'static str, first: usize, text: &str| {
-        let source = Source::Reading { gauge: i, first };
-        Row::output(
-            format!("gauge.{name}.{suffix}"),
-            unit,
-            source,
-            format!("{text}{of} at gauge {name}"),
-        )
-    };
-    let mut rows = match &gauge.kind {
-        GaugeKind::Depth {
-            length: most, up, ..
-        } => {
-            vec![
-                reading("depth", "m", 0, "depth of material")
-                    .display(length)
-                    .within(0.0, most.max(across(up))),
-            ]
-        }
-        GaugeKind::Profile {
-            count,
-            length: most,
-            up,
-            ..
-        } => {
-            let depth = || {
-                reading("depth", "m", 0, "depths of material")
-                    .display(length)
-                    .within(0.0, most.max(across(up)))
-            };
-            let mut rows = vec![depth()];
-            rows[0].variable.shape = vec![*count];
-            rows.extend((0..*count).map(|k| {
-                let mut row = depth();
-                row.variable.name += &format!("[{}]", k + 1);
-                row.variable.description =
-                    format!("depth of material at foot {} of gauge {name}", k + 1);
-                row.variable.element_of = Some((0, k));
-                row.source = Source::Reading { gauge: i, first: k };
-                row
-            }));
-            rows
-        }
-        GaugeKind::Discharge { .. } => vec![
-            reading(
-                "discharge",
-                "kg/s",
-                0,
-                "mass that crossed from left to right in the last step, per second,",
-            ),
-            reading(
-                "mass",
-                "kg",
-                1,
-                "net mass that crossed from left to right since the start",
-            ),
-        ],
-        GaugeKind::Force { .. } => {
-            let axes = scene.dimension.axes();
-            let force = |(k, axis): (usize, &str)| {
-                let text = format!("force of the material along {axis}, mean over the last step,");
-                reading(&format!("force_{axis}"), "N", k, &text)
-            };
-            ["x", "y", "z"]
-                .into_iter()
-                .take(axes)
-                .enumerate()
-                .map(force)
-                .collect()
-        }
-        GaugeKind::Pressure { quantity, .. } => {
-            let text = match quantity {
-                PressureQuantity::Total => "pressure of the material",
-                PressureQuantity::Pore => "pressure of fluids and in pores",
-                PressureQuantity::Effective => "pressure of grain on grain",
-            };
-            vec![reading("pressure", "Pa", 0, text)]
-        }
-        GaugeKind::InterfaceStress { .. } => vec![
-            reading("shear_stress", "Pa", 0, "shear stress at the highest point").within(0.0, f64::INFINITY),
-        ],
-        GaugeKind::Mass { .. } => vec![reading("mass", "kg", 0, "mass in the box")],
-        GaugeKind::Front { .. } => vec![
-            reading(
-                "front",
-                "m",
-                0,
-                "outermost distance with a depth of its least_depth, one particle spacing by default,",
-            )
-            .display(length),
-            reading(
-                "front_quantile",
-                "m",
-                1,
-                "distance that 99.5 % of the mass ahead stays behind",
-            )
-            .display(length),
-        ],
-    };
-    let text =
-        format!("whether gauge {name} reads anything: 0 valid, 1 empty, 2 outside, 3 blocked");
-    let validity = Row::output(
-        format!("gauge.{name}.validity"),
-        "",
-        Source::Validity(i),
-        text,
-    );
-    rows.push(validity.kind(ValueKind::Integer).within(0.0, 3.0));
-    rows
-}
-
-/// Millimetres for scenes smaller than a metre.
-fn length_display(scene: &Scene) -> Option<(&'static str, f64)> {
-    let extent = (0..scene.dimension.axes())
-        .map(|a| scene.domain.upper[a] - scene.domain.lower[a])
-        .fold(0.0, f64::max);
-    (extent <= 1.0).then_some(("mm", 1000.0))
 }
 
 fn totals() -> impl Iterator<Item = Row> {

@@ -6,12 +6,14 @@
 //! start value changes nothing, not even a bit.
 
 mod bodies;
+mod gauges;
 mod materials;
+mod walls;
 
 use self::bodies::BodyKey;
 use self::materials::MaterialKey;
 use super::Quality;
-use super::raw::{At, Coordinates, Entry, Length, Named, Place, Ratio, RawGauge, RawScene};
+use super::raw::{At, Entry, Named, Place, RawScene};
 use super::types::{Body, Dimension, Domain, Scene, up};
 use super::{SceneErrors, parse_changed};
 
@@ -46,6 +48,7 @@ enum Target {
 }
 
 const MILLIMETRES: Option<(&str, f64)> = Some(("mm", 1000.0));
+
 impl Scene {
     /// The scene with other values of its [`Scene::adjustables`], in their order.
     ///
@@ -76,7 +79,7 @@ pub(super) fn adjustables(
     domain: &Domain,
     dimension: Dimension,
 ) -> Vec<Adjustable> {
-    let (lower, upper, axes) = (domain.lower, domain.upper, dimension.axes());
+    let axes = dimension.axes();
     let mut list = vec![Adjustable {
         name: "solver.resolution_scale".to_owned(),
         description:
@@ -117,35 +120,10 @@ pub(super) fn adjustables(
         );
     }
     for (i, (name, wall)) in sections(raw.walls.as_ref()).enumerate() {
-        if let Some(friction) = &wall.wall_friction {
-            let start = friction.value.0;
-            list.push(Adjustable {
-                name: format!("wall.{name}.friction"),
-                description: format!("Coulomb friction coefficient of wall {name}"),
-                unit: "1",
-                display_unit: None,
-                start,
-                range: around((0.0, 10.0), start),
-                target: Target::WallFriction(i),
-            });
-        }
+        list.extend(walls::friction(i, name, wall));
     }
     for (i, (name, gauge)) in sections(raw.gauges.as_ref()).enumerate() {
-        for (p, (point, at)) in points(gauge).into_iter().enumerate() {
-            for axis in 0..axes {
-                let start = at.values.get(axis).copied().unwrap_or(0.0);
-                let letter = ["x", "y", "z"][axis];
-                list.push(Adjustable {
-                    name: format!("gauge.{name}.{point}_{letter}"),
-                    description: format!("{letter} of `{point}`, a place of gauge {name}"),
-                    unit: "m",
-                    display_unit: MILLIMETRES,
-                    start,
-                    range: around((lower[axis], upper[axis]), start),
-                    target: Target::Gauge(i, p, axis),
-                });
-            }
-        }
+        gauges::list(i, name, gauge, domain, axes, &mut list);
     }
     list
 }
@@ -153,22 +131,6 @@ pub(super) fn adjustables(
 /// The range, wide enough for what the scene says.
 fn around((least, most): (f64, f64), start: f64) -> (f64, f64) {
     (least.min(start), most.max(start))
-}
-
-/// Places of a gauge that may be moved, with the names of their keys.
-fn points(gauge: &RawGauge) -> Vec<(&'static str, &Coordinates<Length>)> {
-    let all = match gauge {
-        RawGauge::Depth(g) => vec![("foot", &g.foot)],
-        RawGauge::InterfaceStress(g) => vec![("foot", &g.foot)],
-        RawGauge::Profile(g) => vec![("from", &g.from), ("to", &g.to)],
-        RawGauge::Discharge(g) => vec![("from", &g.from), ("to", &g.to)],
-        RawGauge::Pressure(g) => vec![("at", &g.at)],
-        RawGauge::Front(g) => vec![("origin", &g.origin)],
-        RawGauge::Force(_) | RawGauge::Mass(_) => Vec::new(),
-    };
-    all.into_iter()
-        .filter_map(|(name, at)| Some((name, &at.as_ref()?.value)))
-        .collect()
 }
 
 fn apply(raw: &mut RawScene, target: Target, value: f64) {
@@ -202,27 +164,13 @@ fn apply(raw: &mut RawScene, target: Target, value: f64) {
             }
         }
         Target::WallFriction(i) => {
-            let wall = entry(raw.walls.as_mut(), i).and_then(|e| e.value.as_mut());
-            if let Some(friction) = wall.and_then(|w| w.wall_friction.as_mut()) {
-                friction.value = Ratio(value);
+            if let Some(wall) = entry(raw.walls.as_mut(), i).and_then(|e| e.value.as_mut()) {
+                walls::apply(wall, value);
             }
         }
         Target::Gauge(i, point, axis) => {
-            let gauge = entry(raw.gauges.as_mut(), i).and_then(|e| e.value.as_mut());
-            let at = match (gauge, point) {
-                (Some(RawGauge::Depth(g)), _) => &mut g.foot,
-                (Some(RawGauge::InterfaceStress(g)), _) => &mut g.foot,
-                (Some(RawGauge::Profile(g)), 0) => &mut g.from,
-                (Some(RawGauge::Profile(g)), _) => &mut g.to,
-                (Some(RawGauge::Discharge(g)), 0) => &mut g.from,
-                (Some(RawGauge::Discharge(g)), _) => &mut g.to,
-                (Some(RawGauge::Pressure(g)), _) => &mut g.at,
-                (Some(RawGauge::Front(g)), _) => &mut g.origin,
-                (Some(RawGauge::Force(_) | RawGauge::Mass(_)) | None, _) => return,
-            };
-            let values = at.as_mut().map(|at| &mut at.value.values);
-            if let Some(coordinate) = values.and_then(|v| v.get_mut(axis)) {
-                *coordinate = value;
+            if let Some(gauge) = entry(raw.gauges.as_mut(), i).and_then(|e| e.value.as_mut()) {
+                gauges::apply(gauge, point, axis, value);
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Bodies: where material is at the start, clear of everything else.
 
+use super::Lift;
 use super::geometry::{Region, crossing_edges, cut_below, signed_area};
-use super::{Lift, dot};
+use crate::math::dot;
 use crate::scene::raw::{At, Coordinates, Entry, Length, List, Place, RawBody, RawBox, RawColumn};
 use crate::scene::types::{Body, Dimension, VelocityProfile};
 use crate::shape::Shape;
@@ -223,7 +224,7 @@ impl Lift<'_> {
         };
         let up = self.up();
         let (lower, upper) = region.bounds();
-        let (a, b) = (dot(up, lower), dot(up, upper));
+        let (a, b) = (dot(&up, &lower), dot(&up, &upper));
         let (low, high) = (a.min(b), a.max(b));
         if level.value.0 <= low || level.value.0 > high + self.eps() {
             self.problems.report(

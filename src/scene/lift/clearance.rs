@@ -1,9 +1,10 @@
 //! Where bodies and inflows may not start: in walls and behind them; bodies not in closed gates and drains either.
 
+use super::Lift;
 use super::faces::Face;
 use super::geometry::{Region, cross, edges};
 use super::walls::Solid;
-use super::{Lift, dot, minus};
+use crate::math::{dot, sub};
 use crate::scene::raw::Place;
 
 impl Lift<'_> {
@@ -117,7 +118,7 @@ impl Solid {
                             upper[a]
                         }
                     };
-                    dot(minus([pick(0), pick(1), pick(2)], *point), *normal) < -eps
+                    dot(&sub(&[pick(0), pick(1), pick(2)], point), normal) < -eps
                 };
                 (0..8).any(behind).then_some(Hit::Behind)
             }
@@ -141,7 +142,7 @@ impl Solid {
             (Solid::Plane { point, normal }, _) => face
                 .corners()
                 .chain(face.row())
-                .any(|x| dot(minus(x, *point), *normal) < -eps)
+                .any(|x| dot(&sub(&x, point), normal) < -eps)
                 .then_some(Hit::Behind),
             (_, Some(outline)) => self.meets(&outline, spacing, eps),
             (Solid::Block(block), None) => face

@@ -1,8 +1,9 @@
 //! Inflows and outflows.
 
+use super::Lift;
 use super::faces::Face;
 use super::geometry::Region;
-use super::{Lift, cross_product, dot, length, minus, normalized};
+use crate::math::{cross, dot, length, normalized, sub};
 use crate::scene::raw::{Entry, RawInflow, RawOutflow};
 use crate::scene::types::{Inflow, NamedMaterial, Outflow, Point};
 
@@ -37,7 +38,7 @@ impl Lift<'_> {
             return None;
         }
         let flux = self.check_inflow_direction(raw, from, to, span, velocity?)?;
-        if let (Some(way), Some(spacing)) = (normalized(velocity?), self.spacing) {
+        if let (Some(way), Some(spacing)) = (normalized(&velocity?), self.spacing) {
             let face = Face::new([from, to, span], way, spacing);
             self.check_inflow_against_walls(&entry.place, &face);
         }
@@ -69,17 +70,17 @@ impl Lift<'_> {
         span: Point,
         velocity: Point,
     ) -> Option<f64> {
-        let edge = minus(to, from);
+        let edge = sub(&to, &from);
         let area = if self.planar() {
             [-edge[1], edge[0], 0.0]
         } else {
-            cross_product(edge, span)
+            cross(&edge, &span)
         };
-        let flux = dot(area, velocity);
-        if flux > 1e-6 * length(area) * length(velocity) {
+        let flux = dot(&area, &velocity);
+        if flux > 1e-6 * length(&area) * length(&velocity) {
             return Some(flux);
         }
-        let found = if length(velocity) > 0.0 {
+        let found = if length(&velocity) > 0.0 {
             "a velocity that points into the face or along it"
         } else {
             "a velocity of 0"

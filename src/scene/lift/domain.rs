@@ -1,6 +1,7 @@
 //! The domain: extent, periodic sides, width and gravity.
 
-use super::{Lift, length};
+use super::Lift;
+use crate::math::length;
 use crate::scene::raw::{Axis, Gravity, RawDomain};
 use crate::scene::types::{Dimension, Domain, Point};
 
@@ -190,6 +191,6 @@ impl Lift<'_> {
 
     /// Size of gravity [m/s^2].
     pub(super) fn gravity_size(&self) -> f64 {
-        self.domain.as_ref().map_or(0.0, |d| length(d.gravity))
+        self.domain.as_ref().map_or(0.0, |d| length(&d.gravity))
     }
 }

@@ -1,7 +1,7 @@
 //! Room that devices take: before the face of an inflow, behind the face of a gate in space.
 
 use super::geometry::Region;
-use super::{cross_product, length, minus, normalized};
+use crate::math::{cross, length, normalized, sub};
 use crate::scene::types::{Gate, Point};
 
 /// Most places looked at along an edge: more would tell no more of walls and bodies that are wider than this part of it.
@@ -36,7 +36,7 @@ impl Face {
             return None;
         }
         let depth = 0.75 * self.spacing;
-        let edge = normalized(minus(self.to, self.from))?;
+        let edge = normalized(&sub(&self.to, &self.from))?;
         let flat = |x: Point| [x[0], x[1]];
         let far = |end: Point, side: f64| {
             let at = |k: usize| end[k] + depth * (side * edge[k] + self.way[k]);
@@ -60,15 +60,15 @@ impl Face {
     pub(super) fn row(&self) -> impl Iterator<Item = Point> {
         let ahead = 0.5 * self.spacing;
         let start: Point = std::array::from_fn(|k| self.from[k] + ahead * self.way[k]);
-        lattice(start, [minus(self.to, self.from), self.span], self.spacing)
+        lattice(start, [sub(&self.to, &self.from), self.span], self.spacing)
     }
 }
 
 /// Places in the plate of a gate in space where it covers its gap at the start, about a spacing apart, the first layer half
 /// a spacing behind its face.
 pub(super) fn plate_places(gate: &Gate, spacing: f64) -> Vec<Point> {
-    let edge = minus(gate.to, gate.from);
-    let Some(back) = normalized(cross_product(edge, gate.span)) else {
+    let edge = sub(&gate.to, &gate.from);
+    let Some(back) = normalized(&cross(&edge, &gate.span)) else {
         return Vec::new();
     };
     if gate.start >= 1.0 {
@@ -86,7 +86,7 @@ pub(super) fn plate_places(gate: &Gate, spacing: f64) -> Vec<Point> {
 
 /// Middles of the cells of a parallelogram.
 fn lattice(start: Point, [first, second]: [Point; 2], spacing: f64) -> impl Iterator<Item = Point> {
-    let count = |edge: Point| (length(edge) / spacing).round().clamp(1.0, MOST);
+    let count = |edge: Point| (length(&edge) / spacing).round().clamp(1.0, MOST);
     let (along, wide) = (count(first), count(second));
     (0..along as usize).flat_map(move |i| {
         (0..wide as usize).map(move |m| {

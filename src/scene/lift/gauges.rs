@@ -1,6 +1,7 @@
 //! Gauges.
 
-use super::{Lift, dot, minus};
+use super::Lift;
+use crate::math::{dot, length, sub};
 use crate::scene::raw::{
     At, Coordinates, Entry, Length, Place, Ratio, RawFront, RawGauge, RawProfile,
 };
@@ -158,7 +159,7 @@ impl Lift<'_> {
     }
 
     fn check_feet(&mut self, place: &Place, from: Point, to: Point) {
-        if super::length(super::minus(to, from)) <= self.eps() {
+        if length(&sub(&to, &from)) <= self.eps() {
             self.problems.report(
                 place,
                 "from and to at the same point",
@@ -173,7 +174,7 @@ impl Lift<'_> {
         let origin = raw.origin.as_ref().and_then(|p| self.point(p));
         let direction_at = raw.direction.as_ref()?;
         let direction = self.direction(direction_at)?;
-        if dot(direction, up).abs() > 0.999 {
+        if dot(&direction, &up).abs() > 0.999 {
             self.problems.report(
                 &direction_at.place,
                 "a direction parallel to up",
@@ -230,9 +231,9 @@ impl Lift<'_> {
         up: Point,
     ) -> Option<f64> {
         let domain = self.domain.as_ref()?;
-        if let Some(length) = given {
-            let diagonal = super::length(minus(domain.upper, domain.lower));
-            return Some(length.value.0.min(diagonal));
+        if let Some(given) = given {
+            let diagonal = length(&sub(&domain.upper, &domain.lower));
+            return Some(given.value.0.min(diagonal));
         }
         let reach = |foot: &Point| {
             let exits = (0..self.axes()).filter(|&a| up[a].abs() > 1e-9).map(|a| {

@@ -28,9 +28,11 @@ use super::raw::{
     At, Coordinates, DimensionWord, Entry, Named, Place, Problems, RawScene, nearest,
 };
 use super::types::{Dimension, Domain, NamedMaterial, Point, Scene};
+use crate::math::{dot, normalized};
 pub(super) use friction::values as preset_values;
 use geometry::Region;
 pub(super) use material::fluid_preset;
+pub(crate) use numerics::MOST_PARTICLES;
 
 /// The scene, or `None` if a problem was reported.
 pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Option<Scene> {
@@ -175,7 +177,7 @@ impl<'r> Lift<'r> {
     }
 
     fn height(&self, point: Point) -> f64 {
-        dot(self.up(), point)
+        dot(&self.up(), &point)
     }
 
     /// A point or vector with as many values as the scene has dimensions; reports other counts.
@@ -232,7 +234,7 @@ impl<'r> Lift<'r> {
     /// A direction of unit length; reports zero vectors.
     fn direction<Q>(&mut self, at: &At<Coordinates<Q>>) -> Option<Point> {
         let vector = self.vector(at)?;
-        let unit = normalized(vector);
+        let unit = normalized(&vector);
         if unit.is_none() {
             self.problems.report(
                 &at.place,
@@ -345,29 +347,4 @@ impl<'r> Lift<'r> {
         let named = materials.get(index)?.as_ref()?;
         Some(named.material.rest_density())
     }
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn minus(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn length(a: Point) -> f64 {
-    a[0].hypot(a[1]).hypot(a[2])
-}
-
-fn cross_product(a: Point, b: Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn normalized(a: Point) -> Option<Point> {
-    let size = length(a);
-    (size > 0.0 && size.is_finite()).then(|| a.map(|c| c / size))
 }

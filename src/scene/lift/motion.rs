@@ -1,6 +1,7 @@
 //! How walls move: belts, whose surface slides along itself, and rigid walls, which move as a whole.
 
-use super::{Lift, dot, length};
+use super::Lift;
+use crate::math::{dot, length, normalized};
 use crate::scene::raw::{Entry, MotionWord, Place, RawWall};
 use crate::scene::types::{Point, Rotation, WallGeometry};
 
@@ -36,7 +37,7 @@ impl Lift<'_> {
             self.check_turning(&at.place, geometry, rigid, rotation);
         }
         let turns = raw.given.contains(&"angular_velocity");
-        if rigid && length(velocity) == 0.0 && !turns {
+        if rigid && length(&velocity) == 0.0 && !turns {
             self.problems.report(
                 &entry.place,
                 "motion = \"rigid\" without velocity or angular_velocity",
@@ -132,14 +133,14 @@ impl Lift<'_> {
     /// A plane fills the domain's section, so that it can move along its normal only; rings move along the axis.
     fn check_rigid(&mut self, place: &Place, geometry: &WallGeometry, velocity: Point) {
         if let WallGeometry::Plane { normal, .. } = geometry {
-            let across = dot(velocity, *normal);
+            let across = dot(&velocity, normal);
             let along: Point = std::array::from_fn(|k| velocity[k] - across * normal[k]);
-            if length(along) > 1e-6 * length(velocity) {
+            if length(&along) > 1e-6 * length(&velocity) {
                 self.problems.report(
                     place,
                     format!(
                         "a rigid plane that moves along itself at {} m/s",
-                        length(along)
+                        length(&along)
                     ),
                     "a velocity along the plane's normal",
                     "turn it, use motion = \"belt\", or use a polyline or a box",
@@ -165,7 +166,7 @@ impl Lift<'_> {
         rotation: Rotation,
     ) {
         let table = match geometry {
-            WallGeometry::Plane { normal, .. } => dot(*normal, rotation.axis).abs() > 1.0 - 1e-9,
+            WallGeometry::Plane { normal, .. } => dot(normal, &rotation.axis).abs() > 1.0 - 1e-9,
             _ => false,
         };
         let plane = matches!(geometry, WallGeometry::Plane { .. });
@@ -213,15 +214,15 @@ impl Lift<'_> {
 
     /// The velocity of a belt lies in its surface.
     fn check_belt(&mut self, place: &Place, geometry: &WallGeometry, velocity: Point) {
-        let speed = length(velocity);
+        let speed = length(&velocity);
         let across = match geometry {
-            WallGeometry::Plane { normal, .. } => dot(velocity, *normal).abs(),
+            WallGeometry::Plane { normal, .. } => dot(&velocity, normal).abs(),
             WallGeometry::Box { .. } => speed,
             WallGeometry::Polyline { points, .. } => points
                 .windows(2)
                 .filter_map(|w| {
                     let along = [w[1][0] - w[0][0], w[1][1] - w[0][1], 0.0];
-                    let [x, y, _] = super::normalized(along)?;
+                    let [x, y, _] = normalized(&along)?;
                     Some((velocity[0] * y - velocity[1] * x).abs())
                 })
                 .fold(0.0, f64::max),

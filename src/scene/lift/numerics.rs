@@ -6,7 +6,7 @@ use crate::scene::types::NamedMaterial;
 use crate::solver::{Numerics, Scheme, YieldForm};
 
 /// Most particles of a scene: memory of a large machine.
-const MOST_PARTICLES: f64 = 50e6;
+pub(crate) const MOST_PARTICLES: f64 = 50e6;
 /// Most cells of the neighbour grid, occupied or not.
 const MOST_CELLS: f64 = 1e9;
 

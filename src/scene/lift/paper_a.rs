@@ -1,8 +1,9 @@
 //! Scheme `paper_a`: its numbers, and what of a scene it supports.
 
+use super::Lift;
 use super::scheme::{REMEDY, motion};
-use super::{Lift, cross_product, dot, length};
 use crate::material::Friction;
+use crate::math::{cross, dot, length, sub};
 use crate::scene::raw::{Place, RawNumerics, RawWall, SlipWord, SweepsWord};
 use crate::scene::types::NamedMaterial;
 use crate::solver::{PaperA, Sweeps};
@@ -124,11 +125,11 @@ impl Lift<'_> {
         };
         (0..turns).find_map(|i| {
             let (a, b, c) = (point(i)?, point(i + 1)?, point(i + 2)?);
-            let (s, t) = (super::minus(b, a), super::minus(c, b));
+            let (s, t) = (sub(&b, &a), sub(&c, &b));
             // The material is on the left: a turn to the right is a corner that stands out into it.
-            let right = cross_product(s, t)[2] < -1e-9 * length(s) * length(t);
+            let right = cross(&s, &t)[2] < -1e-9 * length(&s) * length(&t);
             let back =
-                dot(s, t) < 0.0 && cross_product(s, t)[2].abs() <= 1e-9 * length(s) * length(t);
+                dot(&s, &t) < 0.0 && cross(&s, &t)[2].abs() <= 1e-9 * length(&s) * length(&t);
             (right || back).then_some("a corner that stands out into the material")
         })
     }

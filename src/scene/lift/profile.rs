@@ -1,7 +1,8 @@
 //! Layers that start in steady flow down a slope.
 
-use super::{Lift, dot};
+use super::Lift;
 use crate::material::{Bagnold, Friction};
+use crate::math::dot;
 use crate::scene::types::{Body, NamedMaterial, VelocityProfile};
 
 impl Lift<'_> {
@@ -33,8 +34,8 @@ impl Lift<'_> {
             };
             let material = &named.material;
             let gravity = self.domain.as_ref().map_or([0.0; 3], |d| d.gravity);
-            let across = -dot(self.up(), gravity);
-            let along = (dot(gravity, gravity) - across * across).max(0.0).sqrt();
+            let across = -dot(&self.up(), &gravity);
+            let along = (dot(&gravity, &gravity) - across * across).max(0.0).sqrt();
             if across > 0.0 && Bagnold::new(material, 1.0, across, along).is_some() {
                 continue;
             }

@@ -1,8 +1,9 @@
 //! Walls and gates.
 
+use super::Lift;
 use super::faces::plate_places;
 use super::geometry::Region;
-use super::{Lift, length, minus, normalized};
+use crate::math::{cross, length, normalized, sub};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
 use crate::scene::types::{Dimension, Gate, Point, Slip, Wall, WallGeometry};
 
@@ -283,13 +284,13 @@ impl Lift<'_> {
         span: Point,
     ) -> bool {
         let least = 2.0 * self.spacing.unwrap_or(0.0);
-        let edge = minus(to, from);
-        let across = super::cross_product(edge, span);
+        let edge = sub(&to, &from);
+        let across = cross(&edge, &span);
         let thin = if self.planar() {
-            length(edge)
+            length(&edge)
         } else {
-            let longest = length(edge).max(length(span));
-            (length(across) / longest).min(length(edge))
+            let longest = length(&edge).max(length(&span));
+            (length(&across) / longest).min(length(&edge))
         };
         let good = thin >= least && thin > 0.0;
         if !good {
@@ -311,8 +312,8 @@ fn plate(gate: &Gate) -> Option<Region> {
     if gate.start >= 1.0 {
         return None;
     }
-    let edge = minus(gate.to, gate.from);
-    let [x, y, _] = normalized(edge)?;
+    let edge = sub(&gate.to, &gate.from);
+    let [x, y, _] = normalized(&edge)?;
     // To the right of the way from `from` to `to`.
     let deep = [y * gate.thickness, -x * gate.thickness];
     let a = [

@@ -12,76 +12,62 @@ tagged! {
     }
 }
 
-table! {
+/// Declares a table of a law that is made of the inertial number: the keys that all have, and between them the law's own.
+macro_rules! inertial_law {
+    ($(#[doc = $about:literal])+ $name:ident { $($own:tt)* }) => {
+        table! {
+            $(#[doc = $about])+
+            $name {
+                /// Values to start from.
+                optional preset: Preset;
+                /// Friction angle at vanishing shear rate; tan of it is mu_s.
+                optional static_friction_angle: Angle, in Range::above_to(0.0, 1.25);
+                /// Friction angle at large shear rate, not below the static one; tan of it is mu_2.
+                optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
+                /// Inertial number I0 at which friction is half way between the two.
+                optional inertial_number_scale: Ratio, in Range::above(0.0);
+                $($own)*
+                /// Grain diameter.
+                optional grain_diameter: Length, in Range::above(0.0);
+                /// Density of the grains' own material.
+                optional grain_density: Density, in Range::above(0.0);
+                /// Largest volume fraction of grains (0.6 if left out).
+                optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
+                /// Smallest volume fraction of grains that touch, below phi_max (0.5 if left out). Looser material has parted: it carries no stress until it is this dense again.
+                optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
+                /// Shear strength without pressure, added to friction. It is no tensile strength: material that is pulled parts.
+                optional cohesion: Pressure, in Range::from(0.0), default 0;
+                /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
+                optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
+                /// Name of the fluid material that fills the pores: friction is then made of the effective pressure, and grains of mu(I) weigh what they do with their pores full. Left out: dry.
+                optional pore_fluid: Text;
+                /// Artificial sound speed of this material, not above that of the scene; left out: that of the scene.
+                optional sound_speed: Speed, in Range::above(0.0);
+                /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
+                optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
+            }
+        }
+    };
+}
+
+inertial_law! {
     /// Dense granular flow, friction mu(I). Start from a preset and override what differs, or give every value.
     RawMuI {
-        /// Values to start from.
-        optional preset: Preset;
-        /// Friction angle at vanishing shear rate; tan of it is mu_s.
-        optional static_friction_angle: Angle, in Range::above_to(0.0, 1.25);
-        /// Friction angle at large shear rate, not below the static one; tan of it is mu_2.
-        optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
-        /// Inertial number I0 at which friction is half way between the two.
-        optional inertial_number_scale: Ratio, in Range::above(0.0);
         /// Growth of friction at large I: mu_inf I^2/(I0 + I) is added; 0 is none, 0.05 a published value.
         optional high_inertia_friction: Ratio, in Range::within(0.0, 1.0), default 0;
         /// Depth H of a thin layer of sand: I + layer_factor x grain_diameter/H stands in place of I. Left out: no correction.
         optional layer_depth: Length, in Range::above(0.0);
         /// Factor of the layer correction (2.61, that of sand, if left out; glass beads have none).
         optional layer_factor: Ratio, in Range::above(0.0);
-        /// Grain diameter.
-        optional grain_diameter: Length, in Range::above(0.0);
-        /// Density of the grains' own material.
-        optional grain_density: Density, in Range::above(0.0);
-        /// Largest volume fraction of grains (0.6 if left out).
-        optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
-        /// Smallest volume fraction of grains that touch, below phi_max (0.5 if left out). Looser material has parted: it carries no stress until it is this dense again.
-        optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
-        /// Shear strength without pressure, added to friction. It is no tensile strength: material that is pulled parts.
-        optional cohesion: Pressure, in Range::from(0.0), default 0;
-        /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
-        optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
-        /// Name of the fluid material that fills the pores: friction is then made of the effective pressure, and grains of mu(I) weigh what they do with their pores full. Left out: dry.
-        optional pore_fluid: Text;
-        /// Artificial sound speed of this material, not above that of the scene; left out: that of the scene.
-        optional sound_speed: Speed, in Range::above(0.0);
-        /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
-        optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
     }
 }
 
-table! {
+inertial_law! {
     /// Friction mu(I) as Barker and Gray made it well-posed at low I: no yield stress, so that piles creep. Starts from
     /// the values of mu(I).
     RawBarkerGray {
-        /// Values to start from.
-        optional preset: Preset;
-        /// Friction angle at vanishing shear rate; tan of it is mu_s.
-        optional static_friction_angle: Angle, in Range::above_to(0.0, 1.25);
-        /// Friction angle at large shear rate, not below the static one; tan of it is mu_2.
-        optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
-        /// Inertial number I0 at which friction is half way between the two.
-        optional inertial_number_scale: Ratio, in Range::above(0.0);
         /// Growth of friction at large I: mu_inf I^2/(I0 + I) is added.
         optional high_inertia_friction: Ratio, in Range::within(0.0, 1.0), default 0.05;
-        /// Grain diameter.
-        optional grain_diameter: Length, in Range::above(0.0);
-        /// Density of the grains' own material.
-        optional grain_density: Density, in Range::above(0.0);
-        /// Largest volume fraction of grains (0.6 if left out).
-        optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
-        /// Smallest volume fraction of grains that touch, below phi_max (0.5 if left out). Looser material has parted: it carries no stress until it is this dense again.
-        optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
-        /// Shear strength without pressure, added to friction. It is no tensile strength: material that is pulled parts.
-        optional cohesion: Pressure, in Range::from(0.0), default 0;
-        /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
-        optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
-        /// Name of the fluid material that fills the pores: friction is then made of the effective pressure, and grains of mu(I) weigh what they do with their pores full. Left out: dry.
-        optional pore_fluid: Text;
-        /// Artificial sound speed of this material, not above that of the scene; left out: that of the scene.
-        optional sound_speed: Speed, in Range::above(0.0);
-        /// Lowest density of parted material that is kept track of, over the density at rest; below the density at which grains touch.
-        optional parted_density: Ratio, in Range::within(0.1, 0.9), default 0.5;
     }
 }
 

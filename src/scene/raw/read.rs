@@ -319,7 +319,7 @@ pub(super) fn refuse_unknown<'k>(
     for (name, node) in entries {
         if !known.clone().any(|k| k == *name) {
             let keys: Vec<_> = known.clone().collect();
-            let remedy = match nearest(name, known.clone()) {
+            let remedy = match meant(name, &keys).or_else(|| nearest(name, known.clone())) {
                 Some(near) => format!("did you mean {near}? otherwise delete it"),
                 None => "delete it".to_owned(),
             };
@@ -327,6 +327,15 @@ pub(super) fn refuse_unknown<'k>(
             problems.report(node.place(), found, keys.join(", "), remedy);
         }
     }
+}
+
+/// What others call a key by a name that is not like ours: theirs, ours.
+const OTHER_NAMES: [(&str, &str); 1] = [("viscosity", "consistency")];
+
+/// The key that goes by this name elsewhere, if the table has it.
+fn meant<'k>(name: &str, keys: &[&'k str]) -> Option<&'k str> {
+    let (_, ours) = OTHER_NAMES.iter().find(|(theirs, _)| *theirs == name)?;
+    keys.iter().find(|key| *key == ours).copied()
 }
 
 /// The nearest of `known` names, if it is near enough to be meant.

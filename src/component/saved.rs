@@ -1,0 +1,60 @@
+//! What of a simulation is saved, and whether saved bytes are of this scene.
+
+use serde::{Deserialize, Serialize};
+
+use super::sampling::Sampler;
+use super::snapshot;
+use crate::solver::Solver;
+use crate::state::{Grains, State};
+
+/// What is saved: the state, and what sections have counted.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Saved<const D: usize> {
+    pub(super) state: State<D>,
+    pub(super) crossed: Vec<f64>,
+}
+
+impl<const D: usize> Saved<D> {
+    /// The state and the counts of its sections as bytes.
+    ///
+    /// # Errors
+    /// They are too many.
+    pub(super) fn encode(state: &State<D>, sampler: &Sampler<D>) -> Result<Vec<u8>, String> {
+        snapshot::encode(&Self {
+            state: state.clone(),
+            crossed: sampler.crossed(),
+        })
+    }
+
+    /// Takes saved bytes apart; refuses what does not fit this scene, whose state is `now`.
+    ///
+    /// # Errors
+    /// The bytes are not such a state, or do not fit.
+    pub(super) fn decode(
+        bytes: &[u8],
+        now: &State<D>,
+        solver: &Solver<D>,
+        sampler: &Sampler<D>,
+    ) -> Result<Self, String> {
+        let saved: Self = snapshot::decode(bytes)?;
+        let state = &saved.state;
+        let share = |x: f64| (0.0..=1.0).contains(&x);
+        let options = |g: &Grains<D>| [g.implicit, g.exact_yield, g.wall_friction, g.saturated];
+        let fits = options(&state.grains) == options(&now.grains)
+            && state.grains.is_consistent(solver.materials())
+            && state
+                .gates
+                .iter()
+                .all(|g| share(g.opening) && share(g.listed_opening) && g.rate.is_finite())
+            && saved.state.gates.len() == now.gates.len()
+            && saved.state.inflows.len() == now.inflows.len()
+            && saved.state.drained.len() == now.drained.len()
+            && saved.state.impulse.len() == now.impulse.len()
+            && saved.crossed.len() == sampler.crossed().len();
+        if fits {
+            Ok(saved)
+        } else {
+            Err("its devices, gauges or particles do not fit this scene".to_owned())
+        }
+    }
+}
