@@ -129,8 +129,8 @@ impl<const D: usize> Contact<D> {
     }
 }
 
-/// A traction well beyond what faces bear, over mu_w p [1]: what pulls the faces together counts too.
-const FAR: f64 = 1e3;
+/// mu_w p over the traction of a face along which a particle slides by so small a share of its slip [1].
+const STEEP: f64 = 10.0;
 
 impl<const D: usize> Solver<D> {
     /// Makes the friction rows of a step from the contacts of the last sweep.
@@ -258,10 +258,19 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// T of what slides at u: all that the faces bear against it [Pa].
+    /// T of what slides at u: all that its faces bear against it [Pa]; less of one along which it hardly does.
     fn sliding(&self, row: &FrictionRow<D>, u: &Vector<D>, tau: &Tensor<D>) -> Vector<D> {
-        let x = scale(FAR * row.bears / norm(u).max(f64::MIN_POSITIVE), u);
-        sub(&x, &self.beyond(row, &x, tau, 1.0))
+        let mut borne = [0.0; D];
+        let most = STEEP * row.bears / norm(u).max(f64::MIN_POSITIVE);
+        for c in &self.friction.contacts[row.range.clone()] {
+            let along = c.along(u);
+            let size = norm(&along).max(f64::MIN_POSITIVE);
+            let share = most.min(self.friction_limit(c, tau) / size);
+            for k in 0..D {
+                borne[k] += c.area * share * along[k];
+            }
+        }
+        apply(&row.spread, &borne)
     }
 
     /// Notes T - r s of every row, what of the next solve's tractions does not follow the velocity [Pa].
