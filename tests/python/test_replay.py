@@ -10,6 +10,7 @@ import queue
 import random
 import re
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -198,3 +199,26 @@ def test_a_replay_never_speaks_for_a_live_component():
         assert other.returncode == 0, other.stderr
     finally:
         end(process)
+
+
+def test_nor_where_both_have_joined_a_router():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{free.getsockname()[1]}"
+    config = zenoh.Config()
+    config.insert_json5("mode", '"router"')
+    config.insert_json5("listen/endpoints", json.dumps([endpoint]))
+    config.insert_json5("scouting/multicast/enabled", "false")
+    with zenoh.open(config):
+        scene = str(ROOT / "tests/scenes/small_silo.toml")
+        command = [os.environ["SANDGATE"], "serve", scene, "--threads", "1", "--connect", endpoint]
+        live = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            next(line for line in live.stdout if "(Ctrl-C ends)" in line)
+            command = [os.environ["SANDGATE"], "log", "replay", LOG, "--speed", "inf", "--connect", endpoint]
+            refused = subprocess.run(command, capture_output=True, text=True, timeout=60)
+            assert refused.returncode == 6 and "small_silo" in refused.stderr, refused
+            forced = subprocess.run([*command, "--force"], capture_output=True, text=True, timeout=60)
+            assert forced.returncode == 0, forced.stderr
+        finally:
+            end(live)

@@ -36,10 +36,11 @@ pub(super) struct Args {
     /// Wait until somebody subscribes
     #[arg(long)]
     wait: bool,
-    /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0]
+    /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0, or nowhere
+    /// with --connect]
     #[arg(long, value_name = "ENDPOINT")]
     listen: Vec<String>,
-    /// Connect to a router or peer at tcp/HOST:PORT; may be given more than once
+    /// Join a router or peer at tcp/HOST:PORT, where subscribers find it then; may be given more than once
     #[arg(long, value_name = "ENDPOINT")]
     connect: Vec<String>,
     /// A configuration file of Zenoh (JSON5); scouting and admin space stay off whatever it says
@@ -98,8 +99,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         args.file.display(),
         options.instance
     ))?;
-    for listener in outlet.listeners() {
-        say(&format!("listening on {listener}"))?;
+    for line in outlet.reach().lines() {
+        say(&line)?;
     }
     if args.wait {
         outlet.wait_for_subscriber(&stop)?;
