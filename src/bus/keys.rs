@@ -27,6 +27,12 @@ impl Keys {
         &self.base
     }
 
+    /// `INSTANCE`.
+    #[must_use]
+    pub fn instance(&self) -> &str {
+        self.base.rsplit('/').next().unwrap_or_default()
+    }
+
     /// Liveliness token: there while the process lives.
     #[must_use]
     pub fn alive(&self) -> String {

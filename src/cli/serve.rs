@@ -22,10 +22,11 @@ pub(super) struct Args {
     /// Name in keys, 1 to 64 of a-z 0-9 _ - [default: the scene's name]
     #[arg(long, value_name = "NAME")]
     instance: Option<String>,
-    /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0]
+    /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0, or nowhere
+    /// with --connect]
     #[arg(long, value_name = "ENDPOINT")]
     listen: Vec<String>,
-    /// Connect to a router or peer at tcp/HOST:PORT; may be given more than once
+    /// Join a router or peer at tcp/HOST:PORT, where clients find it then; may be given more than once
     #[arg(long, value_name = "ENDPOINT")]
     connect: Vec<String>,
     /// A configuration file of Zenoh (JSON5); scouting and admin space stay off whatever it says
@@ -140,11 +141,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     Ok(closed?)
 }
 
-/// Where clients find it: one `listening on ENDPOINT` a line, for people and programs.
+/// Where clients find it, one place a line, for people and programs.
 fn announce(server: &Server, options: &ServeOptions) -> Result<(), CliError> {
     say(&format!("serving sandgate/v1/{}", options.instance))?;
-    for listener in server.listeners() {
-        say(&format!("listening on {listener}"))?;
+    for line in server.reach().lines() {
+        say(&line)?;
     }
     say(match options.realtime_factor {
         None => "waiting for step requests (Ctrl-C ends)",

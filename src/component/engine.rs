@@ -93,11 +93,9 @@ pub(crate) struct Devices {
 
 /// Why the solver gave up. The component is in mode Failed afterwards.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("at t = {time} s: {what}")]
+#[error("{what}")]
 pub(crate) struct SolverError {
-    /// Simulated time [s].
-    pub(crate) time: f64,
-    /// Particle, quantity, what was found and what is allowed.
+    /// Time, particle, quantity, what was found and what is allowed.
     pub(crate) what: String,
 }
 

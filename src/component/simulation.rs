@@ -221,7 +221,6 @@ impl<const D: usize> Simulation<D> {
 
     fn failed(&self, error: &crate::solver::SolverError) -> SolverError {
         SolverError {
-            time: self.state.time,
             what: error.to_string(),
         }
     }

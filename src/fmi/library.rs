@@ -8,6 +8,9 @@ use super::Error;
 /// File name of the shared library.
 pub const FILE_NAME: &str = "libsandgate_fmu.so";
 
+/// What a library without Zenoh says when it shall publish. It stands in its bytes, and not in those of one with Zenoh.
+pub const WITHOUT_ZENOH: &str = "this library was built without Zenoh; pack the FMU with `sandgate fmu --zenoh` (fmu/README.md)";
+
 /// Which of the shared libraries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
@@ -50,14 +53,17 @@ impl Kind {
 pub fn locate(explicit: Option<&Path>, kind: Kind) -> Result<PathBuf, Error> {
     let (file_name, command) = (kind.file_name(), kind.build_command());
     if let Some(path) = explicit {
-        return if path.is_file() {
-            Ok(path.to_path_buf())
+        let wrong = if !path.is_file() {
+            "is not a file"
+        } else if kind == Kind::Zenoh && lacks_zenoh(path) {
+            "was built without Zenoh"
         } else {
-            Err(Error::Library(format!(
-                "{} is not a file; give the {file_name} that `{command}` makes, or leave it out",
-                path.display()
-            )))
+            return Ok(path.to_path_buf());
         };
+        return Err(Error::Library(format!(
+            "{} {wrong}; give the {file_name} that `{command}` makes, or leave it out",
+            path.display()
+        )));
     }
     let program = std::env::current_exe()
         .map_err(|e| Error::Library(format!("cannot tell where this program is: {e}")))?;
@@ -72,6 +78,13 @@ pub fn locate(explicit: Option<&Path>, kind: Kind) -> Result<PathBuf, Error> {
         "no {file_name} beside {}; build it with `{command}` in Sandgate's source tree and give its path",
         program.display()
     )))
+}
+
+/// A file that cannot be read is refused where it is packed.
+fn lacks_zenoh(library: &Path) -> bool {
+    let bytes = std::fs::read(library).unwrap_or_default();
+    let marker = WITHOUT_ZENOH.as_bytes();
+    bytes.windows(marker.len()).any(|part| part == marker)
 }
 
 /// Builds the library of the source tree at `root` into `target`.
@@ -138,6 +151,20 @@ mod tests {
             std::fs::write(file, "").expect("writable");
         }
         assert_eq!(source_tree(&program), Some((root.to_path_buf(), target)));
+    }
+
+    #[test]
+    fn a_library_without_zenoh_is_not_packed_as_one_with_it() {
+        let folder = temp_dir::TempDir::new().expect("a scratch folder");
+        let library = folder.path().join("lib.so");
+        std::fs::write(&library, format!("ELF{WITHOUT_ZENOH}...")).expect("writable");
+        let error = locate(Some(&library), Kind::Zenoh).expect_err("it has none");
+        let error = error.to_string();
+        assert!(error.contains("lib.so was built without Zenoh"), "{error}");
+        assert!(error.contains("-p sandgate-fmu-zenoh"), "{error}");
+        assert!(locate(Some(&library), Kind::Plain).is_ok());
+        std::fs::write(&library, "ELF").expect("writable");
+        assert!(locate(Some(&library), Kind::Zenoh).is_ok());
     }
 
     #[test]

@@ -97,5 +97,7 @@ mod tests {
         };
         assert_eq!(base_unit("rad"), Some(rad));
         assert_eq!(base_unit("furlong"), None);
+        // The power is a parameter: importers get the name alone.
+        assert_eq!(base_unit("Pa.s^n"), None);
     }
 }

@@ -8,12 +8,13 @@
 
 use super::error::Failure;
 use super::raw::RawChannel;
-use super::sink::{Latch, Sink, Syncer};
+use super::sink::{Latch, Passed, Sink, Syncer};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use std::collections::BTreeMap;
 use std::io::BufWriter;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -76,14 +77,18 @@ struct State {
     /// Bytes of all messages so far.
     bytes: u64,
     dropped: u64,
+    /// Messages of the open chunk, which is in memory.
     unflushed: u64,
+    /// Bytes that the system has taken.
+    passed: Passed,
     sync: Option<Syncer>,
     dirty_since: Option<Instant>,
     time: f64,
     stopped: bool,
 }
 
-/// What became of the messages of a file.
+/// What became of the messages of a file. Of the chunk at which a write failed a part may be there, and can be read: all of it
+/// counts as dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Counts {
     /// Messages in the file.
@@ -108,7 +113,9 @@ impl LogFile {
         } else {
             None
         };
-        let buffered = BufWriter::with_capacity(1 << 16, Latch::new(sink));
+        let latch = Latch::new(sink);
+        let passed = latch.passed();
+        let buffered = BufWriter::with_capacity(1 << 16, latch);
         let created = mcap::WriteOptions::new()
             .compression(None)
             .chunk_size(Some(CHUNK_BYTES))
@@ -123,6 +130,7 @@ impl LogFile {
             bytes: 0,
             dropped: 0,
             unflushed: 0,
+            passed,
             sync,
             dirty_since: None,
             time: 0.0,
@@ -218,9 +226,15 @@ impl LogFile {
         state.bytes += data.len() as u64;
         state.unflushed += 1;
         state.dirty_since.get_or_insert_with(Instant::now);
-        state.with(self.path.as_ref(), |mcap| {
+        let before = state.passed.load(Relaxed);
+        let written = state.with(self.path.as_ref(), |mcap| {
             mcap.write_to_known_channel(&header, data)
         });
+        // Only the end of a chunk, which is larger than the buffer, brings bytes to the system here; this message is the
+        // first of the next one.
+        if written.is_some() && state.passed.load(Relaxed) != before {
+            state.unflushed = 1;
+        }
     }
 
     /// Closes the chunk and hands all bytes to the system.

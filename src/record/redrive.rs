@@ -53,6 +53,12 @@ pub struct Redriven {
 }
 
 impl Redriven {
+    /// Whether the log held anything to compare.
+    #[must_use]
+    pub fn has_compared(&self) -> bool {
+        self.compared > 0 || self.same_state.is_some() || self.difference.is_some()
+    }
+
     /// Whether nothing differs and no byte of the log was changed. True also for a log that was cut short, as far as it
     /// goes; [`Redriven::ending`] tells.
     #[must_use]
@@ -94,7 +100,7 @@ pub enum RedriveError {
     Read(#[from] ReadError),
     /// The log does not carry what a run needs.
     #[error(
-        "log {path}: {problem}; only logs of sandgate run, serve and log redrive can be run again"
+        "log {path}: {problem}; only logs of sandgate run, serve and log redrive, of FMUs and of the C library can be run again"
     )]
     Missing {
         /// The file.

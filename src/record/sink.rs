@@ -2,6 +2,8 @@
 
 use std::fs::File;
 use std::io::{self, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 /// Takes the bytes of a log in order.
 pub(super) trait Sink: Write + Send {
@@ -37,11 +39,23 @@ impl Sink for File {
 pub(super) struct Latch {
     sink: Box<dyn Sink>,
     failed: Option<io::ErrorKind>,
+    passed: Passed,
 }
+
+/// Bytes that the system has taken, for who does not have the latch at hand.
+pub(super) type Passed = Arc<AtomicU64>;
 
 impl Latch {
     pub(super) fn new(sink: Box<dyn Sink>) -> Self {
-        Self { sink, failed: None }
+        Self {
+            sink,
+            failed: None,
+            passed: Passed::default(),
+        }
+    }
+
+    pub(super) fn passed(&self) -> Passed {
+        self.passed.clone()
     }
 
     pub(super) fn sync(&mut self) -> io::Result<()> {
@@ -64,7 +78,9 @@ impl Latch {
 
 impl Write for Latch {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.guard(|sink| sink.write(bytes))
+        let written = self.guard(|sink| sink.write(bytes))?;
+        self.passed.fetch_add(written as u64, Relaxed);
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -75,7 +91,7 @@ impl Write for Latch {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use std::sync::{Arc, Mutex};
+    use std::sync::Mutex;
 
     /// Keeps bytes in memory; has room for `room` of them until somebody makes more.
     #[derive(Clone, Default)]

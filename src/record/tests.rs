@@ -208,6 +208,28 @@ fn a_disk_that_was_full_for_a_moment_leaves_a_log_without_a_hole() {
     assert!((counts.written..counts.written + 10).contains(&messages));
 }
 
+/// Chunks are closed when they are full, too, not only by flushes: what is in them is in the file.
+#[test]
+fn what_a_full_disk_left_out_is_counted_to_the_chunk() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let lines: Vec<_> = (0..60_000).map(line).collect();
+    let size = whole(&lines, usize::MAX).len();
+    let disk = Disk::with_room(size * 3 / 4);
+    let (counts, failure) = write(disk.clone(), &lines, usize::MAX).finish();
+    assert!(failure.is_some());
+    let bytes = disk.bytes.lock().unwrap().clone();
+    let (entries, _) = read(&on_disk(folder.path(), &bytes));
+    let messages = entries.len() as u64 - 2;
+    assert_eq!(counts.written + counts.dropped, 60_000);
+    // A chunk is a MiB, and a part of the last one may be there.
+    let chunk = 60_000 * (1 << 20) / size as u64 + 1_000;
+    assert!(counts.written > 0, "{counts:?}");
+    assert!(
+        (counts.written..counts.written + chunk).contains(&messages),
+        "{counts:?}, {messages} in the file, {chunk} a chunk"
+    );
+}
+
 #[test]
 fn a_device_without_room_is_reported() {
     let full = std::fs::File::options()

@@ -506,19 +506,82 @@ def test_a_name_is_served_once():
         other.end()
 
 
-def router(endpoint):
+def router(endpoint, mode="router"):
     """A router, as `zenohd` is one, at an endpoint that others know."""
     config = zenoh.Config()
-    config.insert_json5("mode", '"router"')
+    config.insert_json5("mode", json.dumps(mode))
     config.insert_json5("listen/endpoints", json.dumps([endpoint]))
     config.insert_json5("scouting/multicast/enabled", "false")
     return zenoh.open(config)
 
 
-def test_a_router_that_comes_back_is_found_again():
+def user(endpoint, mode):
+    """Who looks for a component at a router, in a mode of his own."""
+    config = zenoh.Config()
+    config.insert_json5("mode", json.dumps(mode))
+    config.insert_json5("listen/endpoints", "[]")
+    config.insert_json5("connect/endpoints", json.dumps([endpoint]))
+    config.insert_json5("scouting/multicast/enabled", "false")
+    return zenoh.open(config)
+
+
+def free_endpoint():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{free.getsockname()[1]}"
+        return f"tcp/127.0.0.1:{free.getsockname()[1]}"
+
+
+@pytest.mark.parametrize("hub", ["router", "peer"])
+def test_at_a_router_or_peer_a_name_is_served_once_and_everybody_finds_it(hub):
+    endpoint = free_endpoint()
+    with router(endpoint, hub):
+        server = Server("--connect", endpoint)
+        try:
+            assert server.endpoint is None
+            for mode in ("client", "peer"):
+                with user(endpoint, mode) as session:
+                    until(lambda: raw(session, f"{BASE}/@rpc/status", timeout=1))
+                    assert [str(t.ok.key_expr) for t in session.liveliness().get(f"{BASE}/@alive")] == [f"{BASE}/@alive"]
+                    subscriber, arrived = subscribe(session, f"{BASE}/out/stats")
+                    silo = Component(session, "small_silo")
+                    until(lambda: silo.ask("step") and not arrived.empty())
+                    subscriber.undeclare()
+            # A twin, however it joins.
+            for more in ([], ["--listen", "tcp/127.0.0.1:0"]):
+                command = [os.environ["SANDGATE"], "serve", str(SCENE), "--connect", endpoint, *more]
+                twin = subprocess.run(command, capture_output=True, text=True, timeout=60)
+                assert twin.returncode == 6 and "choose another name with --instance" in twin.stderr, twin
+        finally:
+            server.end()
+
+
+def test_a_router_that_is_not_there_yet_is_looked_for():
+    endpoint = free_endpoint()
+    server = Server("--connect", endpoint)
+    try:
+        with router(endpoint) as late:
+            until(lambda: raw(late, f"{BASE}/@rpc/status", timeout=1), seconds=60)
+            with user(endpoint, "peer") as session:
+                until(lambda: raw(session, f"{BASE}/@rpc/status", timeout=1))
+    finally:
+        server.end()
+
+
+def test_a_client_with_a_listener_is_refused(tmp_path):
+    config = tmp_path / "client.json5"
+    config.write_text("{mode: 'client'}")
+    command = [os.environ["SANDGATE"], "serve", str(SCENE), "--zenoh-config", str(config)]
+    for more, word in (["--listen", "tcp/127.0.0.1:0"], "listens nowhere"), ([], "nobody to connect to"):
+        refused = subprocess.run([*command, *more], capture_output=True, text=True, timeout=60)
+        assert refused.returncode == 2 and word in refused.stderr, refused
+    config.write_text("{mode: 7}")
+    refused = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    # What Zenoh says of it, without the path on the machine that built it.
+    assert refused.returncode == 2 and ".rs:" not in refused.stderr and "client.json5" in refused.stderr, refused
+
+
+def test_a_router_that_comes_back_is_found_again():
+    endpoint = free_endpoint()
     first = router(endpoint)
     server = Server("--connect", endpoint)
     try:

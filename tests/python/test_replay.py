@@ -10,6 +10,7 @@ import queue
 import random
 import re
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -17,6 +18,7 @@ import time
 import pytest
 import zenoh
 from mcap.reader import make_reader
+from mcap.writer import CompressionType, Writer
 
 ROOT = pathlib.Path(os.environ["SANDGATE_ROOT"])
 LOG = os.environ["SANDGATE_LOG"]
@@ -168,6 +170,55 @@ def test_a_replay_keeps_its_time_and_its_window():
     assert took >= 0.2 and late < 1000
 
 
+def frame(message):
+    """The frame that a `foxglove.FrameTransform` places: field 3, a text."""
+    at = message.index(b"\x1a", message.index(b"\x12"))
+    return message[at + 2 : at + 2 + message[at + 1]]
+
+
+def test_before_a_window_come_the_last_scene_and_the_last_of_each_frame():
+    topics, _ = replay("--speed", "inf", "--from", "100 ms")
+    whole = recorded()
+    gauge, frames, scene = (f"{BASE}/out/{leaf}" for leaf in ("gauge/level.depth", "frames", "scene"))
+    inside = len(topics[gauge])
+    assert 0 < inside < len(whole[gauge])
+    kinds = {frame(message) for _, message in whole[frames]}
+    moved = len(topics[frames]) - len(kinds)
+    # The newest before the window, then all of the window.
+    assert kinds and topics[frames] == whole[frames][-len(topics[frames]) :]
+    assert 0 <= moved < len(whole[frames]) - len(kinds)
+    assert topics[scene] == whole[scene][-1:]
+
+
+def test_a_window_without_messages_is_said():
+    command = [os.environ["SANDGATE"], "log", "replay", LOG, "--speed", "inf", "--from", "1000 s"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 5 and "no message of these topics lies between" in done.stderr, done
+
+
+def test_a_log_that_goes_back_in_time_is_replayed_to_its_end(tmp_path):
+    """As an FMU's, whose importer goes back to a saved state."""
+    path, times = tmp_path / "back.mcap", [0, 10, 20, 30, 10, 20, 40]
+    with path.open("wb") as stream:
+        writer = Writer(stream, compression=CompressionType.NONE)
+        writer.start()
+        schema = writer.register_schema("sandgate.StepStats", "protobuf", b"")
+        channel = writer.register_channel(f"{BASE}/out/stats", "protobuf", schema)
+        for number, time_ms in enumerate(times):
+            at = time_ms * 1_000_000
+            writer.add_message(channel, at, bytes([number]), at, number)
+        writer.finish()
+    process, endpoint = start("log", "replay", path, "--wait", "--until", "25 ms")
+    arrived = queue.Queue()
+    with open_session(endpoint) as session:
+        subscriber = session.declare_subscriber(f"{BASE}/out/**", arrived.put)
+        out, err = process.communicate(timeout=120)
+        got = [arrived.get(timeout=60).payload.to_bytes()[0] for _ in range(5)]
+        subscriber.undeclare()
+    assert process.returncode == 0 and "published 5 messages" in out, out + err
+    assert got == [0, 1, 2, 4, 5]
+
+
 def test_a_replay_can_have_another_name_and_go_round():
     process, endpoint = start("log", "replay", LOG, "--speed", "inf", "--loop", "--wait", "--instance", "ghost")
     with open_session(endpoint) as session:
@@ -198,3 +249,26 @@ def test_a_replay_never_speaks_for_a_live_component():
         assert other.returncode == 0, other.stderr
     finally:
         end(process)
+
+
+def test_nor_where_both_have_joined_a_router():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        endpoint = f"tcp/127.0.0.1:{free.getsockname()[1]}"
+    config = zenoh.Config()
+    config.insert_json5("mode", '"router"')
+    config.insert_json5("listen/endpoints", json.dumps([endpoint]))
+    config.insert_json5("scouting/multicast/enabled", "false")
+    with zenoh.open(config):
+        scene = str(ROOT / "tests/scenes/small_silo.toml")
+        command = [os.environ["SANDGATE"], "serve", scene, "--threads", "1", "--connect", endpoint]
+        live = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            next(line for line in live.stdout if "(Ctrl-C ends)" in line)
+            command = [os.environ["SANDGATE"], "log", "replay", LOG, "--speed", "inf", "--connect", endpoint]
+            refused = subprocess.run(command, capture_output=True, text=True, timeout=60)
+            assert refused.returncode == 6 and "small_silo" in refused.stderr, refused
+            forced = subprocess.run([*command, "--force"], capture_output=True, text=True, timeout=60)
+            assert forced.returncode == 0, forced.stderr
+        finally:
+            end(live)

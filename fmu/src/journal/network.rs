@@ -25,9 +25,9 @@ impl Network {
     /// Where it is found.
     pub(super) fn announcement(&self) -> String {
         format!(
-            "publishing sandgate/v1/{}, listening on {}",
+            "publishing sandgate/v1/{}, {}",
             self.0.instance(),
-            self.0.listeners().join(", ")
+            self.0.reach()
         )
     }
 

@@ -2,6 +2,7 @@
 //! one is refused when it is set.
 
 use sandgate::component::Component;
+use sandgate::fmi::library::WITHOUT_ZENOH;
 use sandgate::wire::Observer;
 
 /// A session that cannot be.
@@ -9,9 +10,7 @@ pub(super) enum Network {}
 
 impl Network {
     /// Why there is none.
-    pub(super) const REFUSAL: Option<&'static str> = Some(
-        "this library was built without Zenoh; pack the FMU with `sandgate fmu --zenoh` (fmu/README.md)",
-    );
+    pub(super) const REFUSAL: Option<&'static str> = Some(WITHOUT_ZENOH);
 
     pub(super) fn open(_: &Component, _: &str, _: &str) -> Result<Self, String> {
         Err(Self::REFUSAL.unwrap_or_default().to_owned())

@@ -7,10 +7,11 @@
 use super::desk::{Aside, Desk, Entrances};
 use super::press::Press;
 use super::replies::send_replies;
-use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn};
+use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn, wanted};
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
 use crate::bus::publish::{LastValues, Publisher, WAITING_BATCHES};
+use crate::bus::reach::Reach;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::set_point::SetPoint;
 use crate::bus::status::{Shared, Status, lock};
@@ -31,7 +32,7 @@ use zenoh::{Session, Wait as _};
 /// A component on the network beside its owner.
 pub struct Beside {
     session: Session,
-    listeners: Vec<String>,
+    reach: Reach,
     instance: String,
     publisher: Publisher,
     shared: Arc<Shared>,
@@ -52,9 +53,9 @@ impl Beside {
     /// # Errors
     /// As [`Server::open`](super::Server::open).
     pub fn open(component: &Component, options: &ServeOptions) -> Result<Self, BusError> {
-        let (session, listeners, instance) = session::open_named(options)?;
-        let keys = Keys::new(&instance)?;
-        session::refuse_twin(&session, &keys, options)?;
+        let options = wanted::named(options)?;
+        let keys = Keys::new(&options.instance)?;
+        let (session, reach) = session::open(&options, Some(&keys))?;
         let (batches, publications) = sync_channel(WAITING_BATCHES);
         let (jobs, replies) = sync_channel(WAITING_REPLIES);
         let (task_queue, tasks) = sync_channel(WAITING_TASKS);
@@ -90,8 +91,8 @@ impl Beside {
         let mut beside = Self {
             entrances: Entrances::open(&session, desk)?,
             session,
-            listeners,
-            instance,
+            reach,
+            instance: options.instance,
             publisher,
             shared,
             aside,
@@ -105,10 +106,10 @@ impl Beside {
         Ok(beside)
     }
 
-    /// Where clients connect to, with real ports.
+    /// Where clients find it.
     #[must_use]
-    pub fn listeners(&self) -> &[String] {
-        &self.listeners
+    pub fn reach(&self) -> &Reach {
+        &self.reach
     }
 
     /// Its name in keys.

@@ -11,6 +11,7 @@ mod press;
 mod replies;
 mod session;
 mod unsent;
+mod wanted;
 
 pub use self::beside::Beside;
 pub use self::outlet::Outlet;
@@ -18,10 +19,11 @@ pub use self::outlet::Outlet;
 use self::desk::{Desk, Entrances};
 use self::press::Press;
 use self::replies::send_replies;
-use super::error::BusError;
+use super::error::{BusError, words};
 use super::keys::Keys;
 use super::protocol::Protocol;
 use super::publish::{LastValues, Publisher, WAITING_BATCHES};
+use super::reach::Reach;
 use super::status::Shared;
 use super::stepping::{Note, Stepper, Task, WAITING_NOTES, WAITING_TASKS};
 use super::watch::{Lost, Watch};
@@ -41,8 +43,8 @@ const WAITING_REPLIES: usize = 1024;
 pub struct ServeOptions {
     /// Name of the instance, 1 to 64 of `a-z 0-9 _ -`.
     pub instance: String,
-    /// Endpoints to listen on (`tcp/HOST:PORT`, port 0 for a free one); empty: those of the configuration file, or
-    /// [`DEFAULT_LISTEN`](crate::bus::DEFAULT_LISTEN).
+    /// Endpoints to listen on (`tcp/HOST:PORT`, port 0 for a free one); empty: those of the configuration file; if it has
+    /// none, [`DEFAULT_LISTEN`](crate::bus::DEFAULT_LISTEN), or none where it connects to somebody.
     pub listen: Vec<String>,
     /// Endpoints to connect to, besides those of the configuration file.
     pub connect: Vec<String>,
@@ -79,7 +81,7 @@ impl ZenohConfig {
 /// An open server.
 pub struct Server {
     session: Session,
-    listeners: Vec<String>,
+    reach: Reach,
     component: Component,
     protocol: Protocol,
     publisher: Publisher,
@@ -103,8 +105,7 @@ impl Server {
         observer: &mut dyn Observer,
     ) -> Result<Self, BusError> {
         let keys = Keys::new(&options.instance)?;
-        let (session, listeners) = session::open(options)?;
-        session::refuse_twin(&session, &keys, options)?;
+        let (session, reach) = session::open(options, Some(&keys))?;
         let mut protocol = Protocol::new(keys.base(), options.realtime_factor);
 
         let (batches, publications) = sync_channel(WAITING_BATCHES);
@@ -140,7 +141,7 @@ impl Server {
         Ok(Self {
             entrances: Entrances::open(&session, desk)?,
             session,
-            listeners,
+            reach,
             component,
             protocol,
             publisher,
@@ -152,10 +153,10 @@ impl Server {
         })
     }
 
-    /// Where clients connect to, with real ports: `tcp/127.0.0.1:40123`.
+    /// Where clients find it.
     #[must_use]
-    pub fn listeners(&self) -> &[String] {
-        &self.listeners
+    pub fn reach(&self) -> &Reach {
+        &self.reach
     }
 
     /// Serves on the calling thread until `stop` is set or a client sends `terminate`. `observer` hears all traffic.
@@ -194,7 +195,7 @@ impl Server {
 fn failed<E: std::fmt::Display>(doing: &'static str) -> impl FnOnce(E) -> BusError {
     move |error| BusError::Zenoh {
         doing: doing.to_owned(),
-        reason: error.to_string(),
+        reason: words(error),
     }
 }
 

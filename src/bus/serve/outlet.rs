@@ -7,6 +7,7 @@ use super::{ServeOptions, failed, session, spawn, unsent};
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
 use crate::bus::publish::{LastValues, Publication};
+use crate::bus::reach::Reach;
 use crate::bus::status::lock;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -27,7 +28,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 /// An open session that publishes.
 pub struct Outlet {
     session: Session,
-    listeners: Vec<String>,
+    reach: Reach,
     keys: Keys,
     publishers: HashMap<Arc<str>, Publisher<'static>>,
     last: Arc<LastValues>,
@@ -43,10 +44,7 @@ impl Outlet {
     /// set.
     pub fn open(options: &ServeOptions, force: bool) -> Result<Self, BusError> {
         let keys = Keys::new(&options.instance)?;
-        let (session, listeners) = session::open(options)?;
-        if !force {
-            session::refuse_twin(&session, &keys, options)?;
-        }
+        let (session, reach) = session::open(options, (!force).then_some(&keys))?;
         let last = Arc::new(LastValues::default());
         let (queue, queries): (SyncSender<Query>, Receiver<Query>) = sync_channel(WAITING_QUERIES);
         let queryable = session
@@ -69,7 +67,7 @@ impl Outlet {
         })?;
         Ok(Self {
             session,
-            listeners,
+            reach,
             keys,
             publishers: HashMap::new(),
             last,
@@ -78,10 +76,10 @@ impl Outlet {
         })
     }
 
-    /// Where clients connect to, with real ports.
+    /// Where clients find it.
     #[must_use]
-    pub fn listeners(&self) -> &[String] {
-        &self.listeners
+    pub fn reach(&self) -> &Reach {
+        &self.reach
     }
 
     /// Waits until somebody subscribes to an output, or until `stop`.

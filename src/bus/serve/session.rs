@@ -1,9 +1,11 @@
-//! The session: an explicit configuration, loopback unless told otherwise, scouting and admin space off.
+//! The session: opened in the role in which others find it, and asked whether its name is taken.
 
-use super::{ServeOptions, ZenohConfig, failed};
+use super::wanted::{self, Wanted, as_json, insert};
+use super::{ServeOptions, failed};
 use crate::bus::endpoints::{self, DEFAULT_LISTEN};
-use crate::bus::error::BusError;
+use crate::bus::error::{BusError, words};
 use crate::bus::keys::Keys;
+use crate::bus::reach::Reach;
 use serde_json::Value;
 use std::time::Duration;
 use zenoh::{Config, Session, Wait as _};
@@ -11,17 +13,107 @@ use zenoh::{Config, Session, Wait as _};
 /// How often a free port is looked for, should somebody else take the one that was found.
 const PORT_ATTEMPTS: usize = 8;
 
-/// How long a publication waits for a subscriber that does not take it before that subscriber misses it [us], unless the
-/// configuration says otherwise. Zenoh's own 1 ms loses bursts; who publishes cannot wait for long, because others wait with
-/// him. Bursts are held by the sockets and by our queue.
-const WAIT_BEFORE_DROP: (&str, i64) = (
-    "transport/link/tx/queue/congestion_control/drop/wait_before_drop",
-    50_000,
-);
-
 /// Opens a session by an explicit configuration: loopback unless told otherwise, scouting and admin space off.
-pub(super) fn open(options: &ServeOptions) -> Result<(Session, Vec<String>), BusError> {
-    let (mut config, wanted) = configure(options)?;
+///
+/// As what it joins others, unless the configuration says `mode`: Zenoh hands nothing on between two peers that do not know
+/// each other by gossip, which is off, so that a peer's tokens and replies end at its router. A client is found by everybody
+/// there, whatever they and the one it joined are; but it has one connection and no listener, and there must be somebody as
+/// it opens. Where that is not enough, it is a router among routers, and a peer among peers: of two routers a peer shows its
+/// clients one.
+///
+/// Two instances of one name would both answer, so `alone` is refused where its name is served already. That is asked as a
+/// client, too.
+pub(super) fn open(
+    options: &ServeOptions,
+    alone: Option<&Keys>,
+) -> Result<(Session, Reach), BusError> {
+    let wanted = wanted::configure(options)?;
+    let may_be_client = match wanted.mode.as_deref() {
+        None => wanted.listen.is_empty() && wanted.connect.len() == 1,
+        Some(mode) => mode == "client",
+    };
+    if may_be_client {
+        match wanted.client_of(&wanted.connect) {
+            Ok(session) => {
+                alone.map_or(Ok(()), |keys| refuse_twin(&session, keys))?;
+                let through = wanted.connect;
+                return Ok((
+                    session,
+                    Reach {
+                        through,
+                        ..Reach::default()
+                    },
+                ));
+            }
+            Err(error) if wanted.mode.is_some() => return Err(error),
+            // Nobody is there yet: a router goes on looking.
+            Err(_) => {}
+        }
+    }
+    let among_peers = !may_be_client && wanted.look_around(alone)?;
+    let mode = if among_peers || wanted.connect.is_empty() {
+        "peer"
+    } else {
+        "router"
+    };
+    wanted.listening(mode, may_be_client)
+}
+
+impl Wanted {
+    fn client_of(&self, connect: &[String]) -> Result<Session, BusError> {
+        let mut config = self.config.clone();
+        insert(&mut config, "mode", "\"client\"")?;
+        insert(&mut config, "listen/endpoints", "[]")?;
+        insert(&mut config, "connect/endpoints", &as_json(connect))?;
+        let opened = zenoh::open(config).wait();
+        opened.map_err(|error| BusError::Zenoh {
+            doing: format!("connect to {}", connect.join(", ")),
+            reason: words(error),
+        })
+    }
+
+    /// Whether those who answer are peers, all of them. Who does not answer knows no instance.
+    fn look_around(&self, alone: Option<&Keys>) -> Result<bool, BusError> {
+        let (mut peers, mut routers) = (false, false);
+        for endpoint in &self.connect {
+            let Ok(session) = self.client_of(std::slice::from_ref(endpoint)) else {
+                continue;
+            };
+            let is_router = session.info().routers_zid().wait().next().is_some();
+            (peers, routers) = (peers || !is_router, routers || is_router);
+            let answer = alone.map_or(Ok(()), |keys| refuse_twin(&session, keys));
+            // It has served; what is left of it ends with the process at the latest.
+            let _ = session.close().wait();
+            answer?;
+        }
+        Ok(peers && !routers)
+    }
+
+    /// As a peer or router that others may connect to, and that looks for whom it shall connect to until they are there.
+    fn listening(self, mode: &str, looking: bool) -> Result<(Session, Reach), BusError> {
+        let mode = self.mode.as_deref().unwrap_or(mode);
+        let mut config = self.config;
+        insert(&mut config, "mode", &Value::from(mode).to_string())?;
+        insert(&mut config, "connect/endpoints", &as_json(&self.connect))?;
+        let mut listen = self.listen;
+        if listen.is_empty() && self.connect.is_empty() {
+            listen.push(DEFAULT_LISTEN.to_owned());
+        }
+        let (session, listeners) = with_real_ports(config, &listen)?;
+        let reach = Reach {
+            listeners,
+            through: self.connect,
+            looking,
+        };
+        Ok((session, reach))
+    }
+}
+
+/// The session, and its listeners with real ports.
+fn with_real_ports(
+    mut config: Config,
+    wanted: &[String],
+) -> Result<(Session, Vec<String>), BusError> {
     let mut attempt = 1;
     loop {
         let listeners: Vec<String> = wanted
@@ -39,114 +131,14 @@ pub(super) fn open(options: &ServeOptions) -> Result<(Session, Vec<String>), Bus
                         "listen on {} (port in use? choose another with --listen)",
                         listeners.join(", ")
                     ),
-                    reason: error.to_string(),
+                    reason: words(error),
                 });
             }
         }
     }
 }
 
-/// The configuration but its listeners, and these, checked.
-fn configure(options: &ServeOptions) -> Result<(Config, Vec<String>), BusError> {
-    let plain = Config::default();
-    let mut config = read(options)?;
-    let of_file = |key: &str| match (config.get_json(key), plain.get_json(key)) {
-        (Ok(own), Ok(default)) if own != default => {
-            serde_json::from_str(&own).map_or_else(|_| Vec::new(), |v| endpoints::listed(&v))
-        }
-        _ => Vec::new(),
-    };
-    let mut listen = options.listen.clone();
-    if listen.is_empty() {
-        listen = of_file("listen/endpoints");
-    }
-    if listen.is_empty() {
-        listen = vec![DEFAULT_LISTEN.to_owned()];
-    }
-    for endpoint in &listen {
-        endpoints::check_listener(endpoint, options.allow_open_listener)?;
-    }
-    let mut connect = of_file("connect/endpoints");
-    connect.extend(options.connect.iter().cloned());
-    let (key, wait) = WAIT_BEFORE_DROP;
-    if config.get_json(key).ok() == plain.get_json(key).ok() {
-        insert(&mut config, key, &wait.to_string())?;
-    }
-    insert(&mut config, "connect/endpoints", &as_json(&connect))?;
-    for (key, value) in [
-        ("scouting/multicast/enabled", "false"),
-        ("scouting/gossip/enabled", "false"),
-        ("adminspace/enabled", "false"),
-        ("listen/exit_on_failure", "true"),
-    ] {
-        insert(&mut config, key, value)?;
-    }
-    Ok((config, listen))
-}
-
-/// The configuration as it was given.
-fn read(options: &ServeOptions) -> Result<Config, BusError> {
-    let (read, from) = match &options.config {
-        None => return Ok(Config::default()),
-        Some(ZenohConfig::File(file)) => (Config::from_file(file), file.display().to_string()),
-        Some(ZenohConfig::Text(text)) => (Config::from_json5(text), "(JSON5 text)".to_owned()),
-    };
-    read.map_err(|error| BusError::Config {
-        file: from,
-        reason: error.to_string(),
-    })
-}
-
-/// As [`open`], for who has no command line: `metadata: {sandgate: {instance: "silo-7", allow_open_listener: true}}` of
-/// the configuration counts as much as the options. Gives the instance's name, too.
-pub(super) fn open_named(
-    options: &ServeOptions,
-) -> Result<(Session, Vec<String>, String), BusError> {
-    let mut options = options.clone();
-    let bad = |reason: String| BusError::Config {
-        file: "metadata.sandgate".to_owned(),
-        reason,
-    };
-    let metadata = read(&options)?.get_json("metadata").unwrap_or_default();
-    let metadata: Value = serde_json::from_str(&metadata).unwrap_or_default();
-    let own = metadata.get("sandgate").and_then(Value::as_object);
-    for (key, value) in own.into_iter().flatten() {
-        match (key.as_str(), value) {
-            ("instance", Value::String(name)) => options.instance.clone_from(name),
-            ("allow_open_listener", Value::Bool(open)) => options.allow_open_listener = *open,
-            _ => {
-                return Err(bad(format!(
-                    "found {key}: {value}, allowed are instance, a text, and allow_open_listener, true or false"
-                )));
-            }
-        }
-    }
-    let (session, listeners) = open(&options)?;
-    Ok((session, listeners, options.instance))
-}
-
-fn as_json(endpoints: &[String]) -> String {
-    serde_json::Value::from(endpoints).to_string()
-}
-
-fn insert(config: &mut Config, key: &str, value: &str) -> Result<(), BusError> {
-    config
-        .insert_json5(key, value)
-        .map_err(|error| BusError::Zenoh {
-            doing: format!("configure {key} as {value}"),
-            reason: error.to_string(),
-        })
-}
-
-/// Two instances of one name would both answer; only possible where there is somebody to connect to.
-pub(super) fn refuse_twin(
-    session: &Session,
-    keys: &Keys,
-    options: &ServeOptions,
-) -> Result<(), BusError> {
-    if options.connect.is_empty() && options.config.is_none() {
-        return Ok(());
-    }
+fn refuse_twin(session: &Session, keys: &Keys) -> Result<(), BusError> {
     let twins = session
         .liveliness()
         .get(keys.alive())
@@ -155,7 +147,7 @@ pub(super) fn refuse_twin(
         .map_err(failed("ask whether the name is taken"))?;
     if twins.iter().any(|reply| reply.result().is_ok()) {
         return Err(BusError::Taken {
-            instance: options.instance.clone(),
+            instance: keys.instance().to_owned(),
         });
     }
     Ok(())

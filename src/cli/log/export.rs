@@ -18,7 +18,7 @@ pub(super) struct Args {
     /// All scalars over time, a row each communication point, as the run's gauges.csv has them
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
-    /// The same as Parquet, units and descriptions as metadata of the columns
+    /// The same and the step as Parquet; its metadata has units and descriptions as unit.NAME and description.NAME
     #[arg(long, value_name = "FILE")]
     parquet: Option<PathBuf>,
     /// Particles, walls and gates as VTK in a new folder; open particles.pvd and walls.pvd in ParaView
@@ -48,21 +48,21 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             let nothing = nothing_between(args.window.span(), &whole.time);
             tell!("warning: {}: {nothing}", args.file.display());
         }
-        let shape = format!(
-            "{} rows, {} columns",
-            table.time.len(),
-            table.columns.len() + 1
-        );
+        // Beside the scalars a CSV file has the time, a Parquet file time and step.
+        let shape = |more: usize| {
+            let columns = table.columns.len() + more;
+            format!("{} rows, {columns} columns", table.time.len())
+        };
         if let Some(path) = &args.csv {
             let mut file = BufWriter::new(create(path)?);
             let done = write_csv(&mut file, &table).and_then(|()| file.flush());
             or_remove(path, done)?;
-            say(&format!("{}: {shape}", path.display()))?;
+            say(&format!("{}: {}", path.display(), shape(1)))?;
         }
         if let Some(path) = &args.parquet {
             let done = parquet::write(create(path)?, &table);
             or_remove(path, done.map_err(std::io::Error::other))?;
-            say(&format!("{}: {shape}", path.display()))?;
+            say(&format!("{}: {}", path.display(), shape(2)))?;
         }
         ending = table.ending;
     }

@@ -23,10 +23,20 @@ pub(super) struct Args {
 /// Carries out `sandgate log info`.
 ///
 /// # Errors
-/// [`CliError::Read`] for files that are no logs. A log that was cut is none.
+/// [`CliError::Read`] for files that are no logs, after all others were shown. A log that was cut is none.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    let mut refused: Option<CliError> = None;
     for file in &args.files {
-        let survey = Survey::of(file)?;
+        let survey = match Survey::of(file) {
+            Ok(survey) => survey,
+            Err(error) => {
+                // The last one is told by who gets it.
+                if let Some(earlier) = refused.replace(error.into()) {
+                    tell!("{earlier}");
+                }
+                continue;
+            }
+        };
         let shown = if args.json {
             as_json(&survey).to_string()
         } else {
@@ -34,7 +44,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         };
         say(&shown)?;
     }
-    Ok(())
+    refused.map_or(Ok(()), Err)
 }
 
 fn as_text(survey: &Survey) -> String {

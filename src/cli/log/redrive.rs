@@ -35,7 +35,7 @@ the state. Another processor may compute other bits where it adds or multiplies 
 /// Carries out `sandgate log redrive`.
 ///
 /// # Errors
-/// [`CliError::Redrive`]; [`CliError::Differs`] with `--check`.
+/// [`CliError::Redrive`]; with `--check` [`CliError::Differs`], and [`CliError::Content`] if there is nothing to compare.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.log.is_some() && args.files.len() > 1 {
         return Err(CliError::Usage(
@@ -48,6 +48,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         particles_every: args.particles_every,
     };
     let (mut different, mut said) = (Vec::new(), Ok(()));
+    let mut empty = None;
     for file in &args.files {
         let mut told = Instant::now();
         let done = redrive(file, &options, &mut |time| {
@@ -57,16 +58,24 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             }
         })?;
         let line = verdict(file, &done);
+        if !done.has_compared() {
+            empty.get_or_insert(file);
+        }
         if !done.is_same() && args.check {
             different.push(line);
         } else {
             said = said.and(say(&line));
         }
     }
-    if different.is_empty() {
-        said
-    } else {
-        Err(CliError::Differs(different.join("\n")))
+    match empty {
+        _ if !different.is_empty() => Err(CliError::Differs(different.join("\n"))),
+        Some(file) if args.check => Err(CliError::Content {
+            path: file.clone(),
+            problem: "nothing to compare: it holds no output, figure, frame or state hash"
+                .to_owned(),
+            remedy: "see what it holds with `sandgate log info`, and give a log that goes on",
+        }),
+        _ => said,
     }
 }
 
@@ -104,6 +113,7 @@ fn verdict(file: &Path, done: &Redriven) -> String {
         None => "",
     };
     match &done.ending {
+        _ if !done.has_compared() => format!("{file}: nothing to compare: {did}"),
         Ending::Complete => format!("{file}: same bits: {did}{state}"),
         Ending::Cut { damaged: false, .. } => {
             format!("{file}: same bits up to its cut: {did}; {}", done.ending)

@@ -8,7 +8,9 @@ use super::Choice;
 use crate::bus::{Outlet, ServeOptions, ZenohConfig};
 use crate::cli::{CliError, say, stop};
 use crate::record::{RawEntry, RawMessage, RawReader, Survey, Topics, below_base};
+use crate::wire::foxglove::FrameTransform;
 use crate::wire::keys;
+use prost::Message as _;
 
 /// How long a wait may last without looking whether Ctrl-C was pressed.
 const LOOK_UP: Duration = Duration::from_millis(50);
@@ -36,10 +38,11 @@ pub(super) struct Args {
     /// Wait until somebody subscribes
     #[arg(long)]
     wait: bool,
-    /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0]
+    /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0, or nowhere
+    /// with --connect]
     #[arg(long, value_name = "ENDPOINT")]
     listen: Vec<String>,
-    /// Connect to a router or peer at tcp/HOST:PORT; may be given more than once
+    /// Join a router or peer at tcp/HOST:PORT, where subscribers find it then; may be given more than once
     #[arg(long, value_name = "ENDPOINT")]
     connect: Vec<String>,
     /// A configuration file of Zenoh (JSON5); scouting and admin space stay off whatever it says
@@ -52,7 +55,8 @@ pub(super) struct Args {
 
 const AFTER_HELP: &str = "\
 Published is what was published before: out/** (choose fewer with --topic). Calls are in the log, too, but nobody is
-asked again. With --from, the scene and the last frames before it come first, so that viewers have walls and gates.";
+asked again. With --from, the last scene and the last of each frame before it come first, so that viewers have walls and
+gates. Where a log goes back in time, it is published in its order.";
 
 fn speed(text: &str) -> Result<f64, String> {
     match text.parse() {
@@ -98,8 +102,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         args.file.display(),
         options.instance
     ))?;
-    for listener in outlet.listeners() {
-        say(&format!("listening on {listener}"))?;
+    for line in outlet.reach().lines() {
+        say(&line)?;
     }
     if args.wait {
         outlet.wait_for_subscriber(&stop)?;
@@ -137,6 +141,31 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     Ok(player.outlet.close()?)
 }
 
+/// What viewers need of the time before the first message: the newest scene, and the newest place of each frame.
+#[derive(Default)]
+struct Before(Vec<RawMessage>);
+
+impl Before {
+    fn keep(&mut self, message: RawMessage) {
+        let leaf = below_base(&message.channel.topic);
+        if !matches!(leaf, "out/scene" | "out/frames") {
+            return;
+        }
+        let like = |kept: &RawMessage| {
+            kept.channel.topic == message.channel.topic && frame(kept) == frame(&message)
+        };
+        self.0.retain(|kept| !like(kept));
+        self.0.push(message);
+    }
+}
+
+/// The frame that a message places; none if it places none.
+fn frame(message: &RawMessage) -> Option<String> {
+    let places = below_base(&message.channel.topic) == "out/frames";
+    let read = places.then(|| FrameTransform::decode(message.data.as_slice()));
+    Some(read?.ok()?.child_frame_id)
+}
+
 struct Player<'a> {
     outlet: Outlet,
     base: String,
@@ -150,31 +179,49 @@ struct Player<'a> {
 }
 
 impl Player<'_> {
-    /// The file once.
+    /// The file once, all of it: where a run went back to a state that it had saved, so do its times.
     fn play(&mut self, wants: &dyn Fn(&str) -> bool) -> Result<(), CliError> {
-        let until = self.args.choice.window.span().1 * 1e9;
-        let mut began: Option<(Instant, u64)> = None;
+        let window = &self.args.choice.window;
+        let mut before = Before::default();
+        // When the first message went out, its time, and the time of the last one.
+        let mut began: Option<(Instant, u64, u64)> = None;
         for entry in RawReader::open(&self.args.file)? {
             let RawEntry::Message(message) = entry? else {
                 continue;
             };
-            if self.stop.load(Relaxed) || message.log_time as f64 > until.round() {
-                break;
+            if self.stop.load(Relaxed) {
+                return Ok(());
             }
             if !wants(&message.channel.topic) {
                 continue;
             }
-            if !self.args.choice.window.has(message.log_time) {
-                // Before the window: what viewers need to draw it.
-                let leaf = below_base(&message.channel.topic);
-                if matches!(leaf, "out/scene" | "out/frames") {
-                    self.publish(message)?;
+            if !window.has(message.log_time) {
+                if began.is_none() {
+                    before.keep(message);
                 }
                 continue;
             }
-            let (start, first) = *began.get_or_insert((Instant::now(), message.log_time));
-            self.pace(start, message.log_time.saturating_sub(first));
+            let (start, first) = match began {
+                Some((start, first, last)) if message.log_time >= last => (start, first),
+                None => {
+                    for message in std::mem::take(&mut before).0 {
+                        self.publish(message)?;
+                    }
+                    (Instant::now(), message.log_time)
+                }
+                // It went back: its clock goes on from there.
+                Some(_) => (Instant::now(), message.log_time),
+            };
+            began = Some((start, first, message.log_time));
+            self.pace(start, message.log_time - first);
             self.publish(message)?;
+        }
+        if began.is_none() {
+            return Err(CliError::Content {
+                path: self.args.file.clone(),
+                problem: "no message of these topics lies between --from and --until".to_owned(),
+                remedy: "see its times with `sandgate log info`",
+            });
         }
         Ok(())
     }

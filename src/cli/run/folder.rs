@@ -3,12 +3,15 @@
 //! - without `--out`: `out/<case>`, or `out/<case>-2`, `-3`, ... if that is taken;
 //! - `--out DIR`: new or empty, or with `--force` the folder of an earlier `sandgate run`, whose files are removed;
 //! - `--resume DIR/checkpoint.state`: DIR itself goes on, with its table continued and a new log segment.
+//!
+//! A folder is locked from then on to the end of the run (`lock`): another run is refused there, also with `--force`.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use super::lock::{self, Lock};
 use crate::cli::CliError;
 use crate::whole_file;
 
@@ -21,6 +24,7 @@ pub(super) struct Folder {
     path: PathBuf,
     /// The summary of the earlier part of the same run, if this run goes on with it.
     pub(super) earlier: Option<Value>,
+    _lock: Lock,
 }
 
 impl Folder {
@@ -37,7 +41,7 @@ impl Folder {
                 n => Path::new("out").join(format!("{case}-{n}")),
             };
             match std::fs::create_dir(&path) {
-                Ok(()) => return Ok(Self::new(path)),
+                Ok(()) => return Self::locked(path),
                 Err(e) if e.kind() == ErrorKind::AlreadyExists => number += 1,
                 Err(e) => return Err(cannot_make(&path, e)),
             }
@@ -50,9 +54,10 @@ impl Folder {
     /// [`CliError::Usage`] if something is in it that would be overwritten, [`CliError::File`].
     pub(super) fn named(path: &Path, force: bool) -> Result<Self, CliError> {
         std::fs::create_dir_all(path).map_err(|e| cannot_make(path, e))?;
+        let folder = Self::locked(path.to_path_buf())?;
         let files = names(path)?;
         if files.is_empty() {
-            return Ok(Self::new(path.to_path_buf()));
+            return Ok(folder);
         }
         let shown = path.display();
         match (earlier_summary(path), force) {
@@ -74,35 +79,27 @@ impl Folder {
                         remedy: "remove it by hand or give another folder with --out",
                     })?;
                 }
-                Ok(Self::new(path.to_path_buf()))
+                Ok(folder)
             }
         }
     }
 
-    /// The folder a checkpoint lies in, if `sandgate run` made it.
-    pub(super) fn of_checkpoint(file: &Path) -> Option<Self> {
-        let parent = match file.parent()? {
-            p if p.as_os_str().is_empty() => Path::new("."),
-            p => p,
-        };
-        let earlier = Some(earlier_summary(parent)?);
-        Some(Self {
-            path: parent.to_path_buf(),
-            earlier,
-        })
+    /// The folder a checkpoint lies in, for a run that [goes on](goes_on) there.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] if another run has it, [`CliError::File`].
+    pub(super) fn of_checkpoint(file: &Path) -> Result<Self, CliError> {
+        let mut folder = Self::locked(parent(file).to_path_buf())?;
+        folder.earlier = earlier_summary(&folder.path);
+        Ok(folder)
     }
 
-    fn new(path: PathBuf) -> Self {
-        Self {
+    fn locked(path: PathBuf) -> Result<Self, CliError> {
+        Ok(Self {
+            _lock: Lock::take(&path)?,
             path,
             earlier: None,
-        }
-    }
-
-    /// Whether `path` names this folder.
-    pub(super) fn is(&self, path: &Path) -> bool {
-        let real = |p: &Path| std::fs::canonicalize(p).ok();
-        real(path).is_some_and(|path| real(&self.path) == Some(path))
+        })
     }
 
     /// The folder.
@@ -143,6 +140,21 @@ impl Folder {
             source,
             remedy: "make room or choose another folder with --out",
         })
+    }
+}
+
+/// Whether a run from the checkpoint `file` goes on in its folder: `sandgate run` made that, and `out` is no other one.
+pub(super) fn goes_on(file: &Path, out: Option<&Path>) -> bool {
+    let own = parent(file);
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    earlier_summary(own).is_some()
+        && out.is_none_or(|out| real(out).is_some_and(|out| real(own) == Some(out)))
+}
+
+fn parent(file: &Path) -> &Path {
+    match file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
     }
 }
 
@@ -203,11 +215,12 @@ fn names(folder: &Path) -> Result<Vec<String>, CliError> {
                 .into_owned(),
         );
     }
+    names.retain(|name| name != lock::NAME);
     names.sort();
     Ok(names)
 }
 
-fn cannot_make(path: &Path, source: std::io::Error) -> CliError {
+pub(super) fn cannot_make(path: &Path, source: std::io::Error) -> CliError {
     CliError::File {
         action: "make folder",
         path: path.to_path_buf(),

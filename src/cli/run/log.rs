@@ -135,7 +135,7 @@ impl RunLog {
             self.failure.get_or_insert(error.to_string());
         })?;
         if let Some(failure) = finished.failure {
-            let missing = format!("{} messages are not in the log", finished.dropped);
+            let missing = format!("up to {} messages are not in the log", finished.dropped);
             if self.warned {
                 tell!("warning: {missing}");
             } else {

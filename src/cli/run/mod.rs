@@ -1,11 +1,12 @@
 //! `sandgate run CASE`: the scene's component from start to end, stepped at the scene's communication step with
 //! the scene's schedules as inputs.
 //!
-//! `session` steps, `log` records, `folder` decides where files go, `series` keeps scalars over time, `plot` draws them,
+//! `session` steps, `log` records, `folder` decides where files go, `lock` keeps other runs out of there, `series` keeps scalars over time, `plot` draws them,
 //! `summary` holds the final figures, `progress` shows how far it is. What the component computes does not depend
 //! on anything here but communication steps and inputs.
 
 mod folder;
+mod lock;
 mod log;
 mod notes;
 mod plot;
@@ -61,6 +62,7 @@ The folder then holds:
   summary.json      every final figure, extremes, steps, CPU and wall time, mass account, state hash
   checkpoint.state  the state to go on from
 
+One run at a time writes to a folder: sandgate.lock is locked there until the end.
 Ctrl-C finishes the communication step, saves all of these and prints the command to go on with.
 A resumed run ends with the same bits as an unbroken one.";
 
@@ -80,6 +82,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     };
     check_times(&plan, args.step.is_some())?;
     let stop = stop::on_interrupt("stopping after this communication step and saving")?;
+    let resume = args.resume.as_deref();
+    let continued = match resume.filter(|file| folder::goes_on(file, args.out.as_deref())) {
+        Some(file) => Some(folder::Folder::of_checkpoint(file)?),
+        None => None,
+    };
     let resumed = match &args.resume {
         Some(file) => Some(std::fs::read(file).map_err(|source| CliError::File {
             action: "read saved state",
@@ -90,11 +97,6 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         None => None,
     };
     let component = session::ready(&scene, resumed.as_deref(), &plan)?;
-    let continued = args
-        .resume
-        .as_deref()
-        .and_then(folder::Folder::of_checkpoint)
-        .filter(|own| args.out.as_ref().is_none_or(|out| own.is(out)));
     let folder = match (continued, &args.out) {
         (Some(folder), _) => folder,
         (None, Some(path)) => folder::Folder::named(path, args.force)?,

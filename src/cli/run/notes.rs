@@ -5,7 +5,7 @@ use super::summary::{extremes, short};
 use crate::cli::remarks::remarks;
 use crate::scene::Inflow;
 
-/// A larger share of fast mass than that of single splashes is worth a word.
+/// A larger share of fast mass than that of single splashes is worth a word, and of the time in which a gate stood still.
 const MUCH: f64 = 0.05;
 
 /// A smaller share of what an inflow was to let in is not worth one.
@@ -24,10 +24,21 @@ pub(super) fn notes(session: &Session) -> Vec<String> {
         let mass = values(format!("inflow.{}.mass", inflow.name))?;
         blocked(inflow, spacing, time, rate, mass)
     });
+    let held = scene.gates.iter().filter_map(|gate| {
+        let of = |what: &str| values(format!("gate.{}.{what}", gate.name));
+        held(
+            &gate.name,
+            time,
+            of("opening")?,
+            of("actual_opening")?,
+            of("blocked")?,
+        )
+    });
     fast(session)
         .into_iter()
         .chain(squeezed(session))
         .chain(blocked)
+        .chain(held)
         .chain(remarks(scene))
         .collect()
 }
@@ -55,6 +66,30 @@ fn blocked(
             inflow.name,
             short(admitted),
             short(wanted)
+        )
+    })
+}
+
+/// A gate could not close as it was told to. All that is given holds over, or at the end of, the step that ended at each time.
+fn held(
+    name: &str,
+    time: &[f64],
+    wanted: &[f64],
+    opening: &[f64],
+    blocked: &[f64],
+) -> Option<String> {
+    let steps = time.windows(2).zip(blocked.iter().skip(1));
+    let stood: f64 = steps.map(|(t, blocked)| blocked * (t[1] - t[0])).sum();
+    let whole = time.last()? - time.first()?;
+    let last = blocked.iter().rposition(|blocked| *blocked > 0.0)?;
+    (stood > MUCH * whole).then(|| {
+        format!(
+            "note: gate.{name} was told to close to {} and was blocked for {} of {} s: material stood in its way, and it came\n  \
+             to {}. See gate.{name}.blocked over time.",
+            short(wanted[last]),
+            short(stood),
+            short(whole),
+            short(opening[last]),
         )
     })
 }
@@ -119,6 +154,31 @@ mod tests {
         let told = note(&[9.0, 3.0, 1.0], &[0.0, 0.0, 1.0]).unwrap();
         assert!(told.contains("inflow.in let in 1 of 5 kg wanted"), "{told}");
         assert!(told.contains("above the surface"), "{told}");
+    }
+
+    #[test]
+    fn a_gate_that_was_held_for_long_is_told_with_what_it_was_told_to_do() {
+        let time = [0.0, 1.0, 3.0, 4.0];
+        let note = |blocked: &[f64]| {
+            held(
+                "main",
+                &time,
+                &[1.0, 0.25, 0.25, 1.0],
+                &[1.0, 0.5, 0.4, 1.0],
+                blocked,
+            )
+        };
+        let told = note(&[0.0, 0.0, 1.0, 0.0]).unwrap();
+        for part in [
+            "gate.main was told to close to 0.25",
+            "blocked for 2 of 4 s",
+            "to 0.4.",
+        ] {
+            assert!(told.contains(part), "{told}");
+        }
+        // What holds at the start held over no step.
+        assert_eq!(note(&[1.0, 0.0, 0.0, 0.0]), None);
+        assert_eq!(note(&[0.0; 4]), None);
     }
 
     #[test]

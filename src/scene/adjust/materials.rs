@@ -18,6 +18,8 @@ pub(super) enum MaterialKey {
     Cohesion,
     Density,
     Consistency,
+    /// The consistency where no flow index stands beside it: a viscosity.
+    ConsistencyOfNewton,
     FlowIndex,
     YieldStress,
 }
@@ -26,7 +28,7 @@ pub(super) enum MaterialKey {
 const DEGREES: Option<(&str, f64)> = Some(("deg", 57.295_779_513_082_32));
 /// Friction angles [rad]: the scene's own limits, and not so small that nothing but a fluid is left.
 const ANGLES: (f64, f64) = (0.01, 1.25);
-/// Strengths and consistencies [Pa], [Pa s]: no bound but that of a number.
+/// Strengths and consistencies [Pa], [Pa s^n]: no bound but that of a number.
 const STRENGTHS: (f64, f64) = (0.0, 1e9);
 /// Densities [kg/m^3]: gases are too light for the scheme, nothing is heavier than metals.
 const DENSITIES: (f64, f64) = (1.0, 3e4);
@@ -57,7 +59,9 @@ impl Rows<'_> {
             MaterialKey::InertialScale | MaterialKey::FlowIndex => ("1", None),
             MaterialKey::Diameter => ("m", MILLIMETRES),
             MaterialKey::Density => ("kg/m3", None),
-            MaterialKey::Consistency => ("Pa.s", None),
+            // With another flow index than 1, which is a parameter beside it, its unit is no product of whole powers.
+            MaterialKey::Consistency => ("Pa.s^n", None),
+            MaterialKey::ConsistencyOfNewton => ("Pa.s", None),
             MaterialKey::Cohesion | MaterialKey::YieldStress => ("Pa", None),
         };
         let name = self.material;
@@ -95,17 +99,17 @@ impl Rows<'_> {
 
     /// Consistency and flow index.
     fn viscous(&mut self, consistency: Option<f64>, index: Option<f64>) {
-        let text = "consistency, the viscosity where the flow index is 1,";
-        self.add(
-            "consistency",
-            text,
-            MaterialKey::Consistency,
-            consistency,
-            STRENGTHS,
-        );
+        let (text, key) = match index {
+            Some(_) => (
+                "consistency, the viscosity where the flow index n is 1,",
+                MaterialKey::Consistency,
+            ),
+            None => ("viscosity", MaterialKey::ConsistencyOfNewton),
+        };
+        self.add("consistency", text, key, consistency, STRENGTHS);
         self.add(
             "flow_index",
-            "flow index",
+            "flow index n",
             MaterialKey::FlowIndex,
             index,
             FLOW_INDICES,
@@ -246,7 +250,7 @@ pub(super) fn apply(material: &mut RawMaterial, place: &Place, key: MaterialKey,
         ($raw:ident) => {
             match key {
                 MaterialKey::Density => $raw.density = at(place, "density", Density(value)),
-                MaterialKey::Consistency => {
+                MaterialKey::Consistency | MaterialKey::ConsistencyOfNewton => {
                     $raw.consistency = at(place, "consistency", Viscosity(value))
                 }
                 MaterialKey::FlowIndex => $raw.flow_index = at(place, "flow_index", Ratio(value)),

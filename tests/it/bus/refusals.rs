@@ -209,9 +209,9 @@ fn a_listener_that_others_can_reach_is_refused_unless_it_is_meant() {
     let broken = open(&[], Some("{listen: 7}")).err().unwrap();
     assert!(matches!(broken, BusError::Config { .. }), "{broken}");
     let server = open(&[], Some("{listen: {endpoints: ['tcp/127.0.0.2:0']}}")).unwrap();
-    assert!(server.listeners()[0].starts_with("tcp/127.0.0.2:"));
+    assert!(server.reach().listeners[0].starts_with("tcp/127.0.0.2:"));
     let server = open(&[], None).unwrap();
-    let listener = &server.listeners()[0];
+    let listener = &server.reach().listeners[0];
     assert!(
         listener.starts_with("tcp/127.0.0.1:") && !listener.ends_with(":0"),
         "{listener}"

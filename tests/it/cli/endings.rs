@@ -74,6 +74,44 @@ fn ctrl_c_saves_and_says_how_to_go_on() {
     assert_eq!(desk.table("run"), desk.table("whole"));
 }
 
+/// Two runs in one folder would destroy each other: who comes second is refused, however he asks, and leaves no trace.
+#[test]
+fn a_folder_belongs_to_the_run_that_writes_to_it() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    let long = ["run", &silo, "--out", "run", "--until", "1000 s"];
+    let mut first = running(
+        &desk,
+        &[&long[..], &["--checkpoint-every", "5 ms"]].concat(),
+        "run",
+        "checkpoint.state",
+    );
+    let state = "run/checkpoint.state";
+    for more in [
+        &["--out", "run"][..],
+        &["--out", "run", "--force"],
+        &["--resume", state],
+    ] {
+        let args = [&["run", &silo, "--until", "1000 s"][..], more].concat();
+        desk.refused(
+            &args,
+            2,
+            &["another run writes to run now", "give another folder"],
+        );
+    }
+    // Its checkpoint may be gone on with elsewhere: this gets as far as the end that is too early.
+    let elsewhere = [
+        "run", &silo, "--resume", state, "--out", "copy", "--until", "1 ms", "--step", "1 ms",
+    ];
+    desk.refused(&elsewhere, 2, &["give a later end"]);
+    assert!(first.try_wait().unwrap().is_none());
+    // A lock ends with its process.
+    first.kill().unwrap();
+    first.wait().unwrap();
+    desk.ok(&["run", &silo, "--out", "run", "--force", "--until", "10 ms"]);
+    assert_eq!(desk.summary("run")["status"], "finished");
+    assert!(!desk.path("run/sandgate.lock").exists());
+}
+
 /// What batch systems, `timeout` and a closed terminal send; SIGHUP unless these tests run where it is ignored, as under `nohup`.
 #[cfg(unix)]
 #[test]

@@ -289,6 +289,21 @@ fn a_log_that_starts_at_another_time_runs_again() {
     }
 }
 
+/// That nothing differs says nothing where there was nothing to compare.
+#[test]
+fn a_log_with_nothing_to_compare_does_not_pass_the_check() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    // As a kill leaves it: the scene is there, no message yet.
+    let bytes = std::fs::read(logged().join("run.mcap")).unwrap();
+    let part = folder.path().join("empty.mcap.part");
+    std::fs::write(&part, &bytes[..2000]).unwrap();
+    let args = ["log", "redrive", "--check"].map(OsStr::new);
+    let output = sandgate(&[&args[..], &[part.as_os_str()]].concat());
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(5), "{said}");
+    assert!(said.contains("nothing to compare"), "{said}");
+}
+
 /// A failed step leaves a state that nobody comes by: what was saved of it, and the end, are not compared.
 #[test]
 fn a_log_with_a_failed_step_runs_again_up_to_it() {

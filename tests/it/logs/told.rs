@@ -129,6 +129,19 @@ fn messages_are_printed_by_topic_and_time() {
 }
 
 #[test]
+fn a_file_that_cannot_be_read_hides_no_other() {
+    let path = log_of(logged());
+    let words = ["log", "info", "absent.mcap", &path, "gone.mcap", &path].map(OsStr::new);
+    let output = sandgate(&words);
+    let (said, told) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(5), "{told}");
+    assert_eq!(said.matches("state hash").count(), 2, "{said}");
+    for file in ["absent.mcap", "gone.mcap"] {
+        assert_eq!(told.matches(file).count(), 1, "{told}");
+    }
+}
+
+#[test]
 fn other_files_and_taken_names_are_refused() {
     let folder = temp_dir::TempDir::new().unwrap();
     let scene = python::root().join(SCENE).display().to_string();

@@ -1,0 +1,153 @@
+//! What is wanted of a session: Zenoh's configuration with scouting, gossip and the admin space off, and in which role, where
+//! it listens and whom it joins. Opens nothing.
+
+use super::{ServeOptions, ZenohConfig};
+use crate::bus::endpoints;
+use crate::bus::error::{BusError, words};
+use serde_json::Value;
+use zenoh::Config;
+
+/// How long a publication waits for a subscriber that does not take it before that subscriber misses it [us], unless the
+/// configuration says otherwise. Zenoh's own 1 ms loses bursts; who publishes cannot wait for long, because others wait with
+/// him. Bursts are held by the sockets and by our queue.
+const WAIT_BEFORE_DROP: (&str, i64) = (
+    "transport/link/tx/queue/congestion_control/drop/wait_before_drop",
+    50_000,
+);
+
+/// What is wanted of a session. The configuration is whole but for the three others.
+#[derive(Clone)]
+pub(super) struct Wanted {
+    pub(super) config: Config,
+    /// `client`, `peer` or `router`, where the configuration says it.
+    pub(super) mode: Option<String>,
+    pub(super) listen: Vec<String>,
+    pub(super) connect: Vec<String>,
+}
+
+/// The configuration and what it says of roles and places, checked.
+pub(super) fn configure(options: &ServeOptions) -> Result<Wanted, BusError> {
+    let plain = Config::default();
+    let mut config = read(options)?;
+    let of_file = |key: &str| match (config.get_json(key), plain.get_json(key)) {
+        (Ok(own), Ok(default)) if own != default => {
+            serde_json::from_str(&own).map_or_else(|_| Vec::new(), |v| endpoints::listed(&v))
+        }
+        _ => Vec::new(),
+    };
+    let mut listen = options.listen.clone();
+    if listen.is_empty() {
+        listen = of_file("listen/endpoints");
+    }
+    for endpoint in &listen {
+        endpoints::check_listener(endpoint, options.allow_open_listener)?;
+    }
+    let mut connect = of_file("connect/endpoints");
+    connect.extend(options.connect.iter().cloned());
+    let mode = config.get_json("mode").ok();
+    let mode: Option<String> = mode
+        .and_then(|mode| serde_json::from_str(&mode).ok())
+        .flatten();
+    if mode.as_deref() == Some("client") {
+        check_client(options, &listen, &connect)?;
+    }
+    let (key, wait) = WAIT_BEFORE_DROP;
+    if config.get_json(key).ok() == plain.get_json(key).ok() {
+        insert(&mut config, key, &wait.to_string())?;
+    }
+    for (key, value) in [
+        ("scouting/multicast/enabled", "false"),
+        ("scouting/gossip/enabled", "false"),
+        ("adminspace/enabled", "false"),
+        ("listen/exit_on_failure", "true"),
+    ] {
+        insert(&mut config, key, value)?;
+    }
+    Ok(Wanted {
+        config,
+        mode,
+        listen,
+        connect,
+    })
+}
+
+/// A client connects and does nothing else.
+fn check_client(
+    options: &ServeOptions,
+    listen: &[String],
+    connect: &[String],
+) -> Result<(), BusError> {
+    let reason = if let Some(listener) = listen.first() {
+        format!(
+            "mode is client, which listens nowhere, and {listener} is to be listened on; leave out one of the two, or say \
+             mode router"
+        )
+    } else if connect.is_empty() {
+        "mode is client, and there is nobody to connect to; name a router or peer by --connect or connect.endpoints"
+            .to_owned()
+    } else {
+        return Ok(());
+    };
+    let file = source(options);
+    Err(BusError::Config { file, reason })
+}
+
+/// The configuration as it was given.
+fn read(options: &ServeOptions) -> Result<Config, BusError> {
+    let read = match &options.config {
+        None => return Ok(Config::default()),
+        Some(ZenohConfig::File(file)) => Config::from_file(file),
+        Some(ZenohConfig::Text(text)) => Config::from_json5(text),
+    };
+    read.map_err(|error| BusError::Config {
+        file: source(options),
+        reason: words(error),
+    })
+}
+
+/// Where the configuration comes from.
+fn source(options: &ServeOptions) -> String {
+    match &options.config {
+        Some(ZenohConfig::File(file)) => file.display().to_string(),
+        Some(ZenohConfig::Text(_)) => "(JSON5 text)".to_owned(),
+        None => "(none)".to_owned(),
+    }
+}
+
+/// The options with what stands in the configuration for who has no command line: `metadata: {sandgate: {instance: "silo-7",
+/// allow_open_listener: true}}`.
+pub(super) fn named(options: &ServeOptions) -> Result<ServeOptions, BusError> {
+    let mut options = options.clone();
+    let bad = |reason: String| BusError::Config {
+        file: "metadata.sandgate".to_owned(),
+        reason,
+    };
+    let metadata = read(&options)?.get_json("metadata").unwrap_or_default();
+    let metadata: Value = serde_json::from_str(&metadata).unwrap_or_default();
+    let own = metadata.get("sandgate").and_then(Value::as_object);
+    for (key, value) in own.into_iter().flatten() {
+        match (key.as_str(), value) {
+            ("instance", Value::String(name)) => options.instance.clone_from(name),
+            ("allow_open_listener", Value::Bool(open)) => options.allow_open_listener = *open,
+            _ => {
+                return Err(bad(format!(
+                    "found {key}: {value}, allowed are instance, a text, and allow_open_listener, true or false"
+                )));
+            }
+        }
+    }
+    Ok(options)
+}
+
+pub(super) fn as_json(endpoints: &[String]) -> String {
+    serde_json::Value::from(endpoints).to_string()
+}
+
+pub(super) fn insert(config: &mut Config, key: &str, value: &str) -> Result<(), BusError> {
+    config
+        .insert_json5(key, value)
+        .map_err(|error| BusError::Zenoh {
+            doing: format!("configure {key} as {value}"),
+            reason: words(error),
+        })
+}
