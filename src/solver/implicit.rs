@@ -89,7 +89,6 @@ impl<const D: usize> Solver<D> {
             self.workers
                 .each(&mut work.velocity, |i, v| *v = current[i].velocity());
             self.restore_momentum(state, &mut work.velocity);
-            self.even_friction(state, dt, &mut work);
         }
         self.viscous = work;
         result

@@ -357,6 +357,7 @@ impl<const D: usize> Solver<D> {
         let iterations = self.solve_viscous(state, dt)?;
         let impulse = state.impulse.clone();
         self.add_reactions(state, dt, was_quiet);
+        self.even_friction(state, dt, was_quiet);
         self.note_lone(state);
         self.move_grains(state, dt, acoustic_dt)?;
         on_move(&self.before, &state.grains);

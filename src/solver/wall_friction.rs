@@ -347,24 +347,27 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Makes the friction of a step of what slides that of the pressure and stress it ended with, by what the last solve took too much or
-    /// too little: friction is then mu_w times the normal force, step by step.
-    pub(super) fn even_friction(&self, state: &State<D>, dt: f64, work: &mut Viscous<D>) {
-        let Viscous { held, velocity, .. } = work;
+    /// too little: friction is then mu_w times the normal force, step by step. After [`Solver::add_reactions`], whose other forces are those
+    /// of the solve's velocities.
+    pub(super) fn even_friction(&mut self, state: &mut State<D>, dt: f64, all: bool) {
+        let Viscous { held, velocity, .. } = &mut self.viscous;
         for (row, held) in self.friction.rows.iter().zip(held) {
             if !row.slides {
                 continue;
             }
-            let (before, t) = (velocity[row.i], &state.grains.wall_traction[row.i]);
-            let slip = row.slip(&before);
-            let mut lacks: Vector<D> =
-                std::array::from_fn(|k| t[k] - held[k] - row.penalty * slip[k]);
+            let (v, t) = (&mut velocity[row.i], &state.grains.wall_traction[row.i]);
+            let slip = row.slip(v);
+            let lacks: Vector<D> = std::array::from_fn(|k| t[k] - held[k] - row.penalty * slip[k]);
             let most = row.bears / norm(&lacks).max(f64::MIN_POSITIVE);
-            lacks = scale(most.min(1.0), &lacks);
-            let push = apply(&row.grip, &lacks);
-            let v = &mut velocity[row.i];
-            for k in 0..D {
-                v[k] -= dt / state.grains.mass[row.i] * push[k];
-                held[k] += lacks[k] - row.penalty * (v[k] - before[k]);
+            let lacks = scale(most.min(1.0), &lacks);
+            for c in &self.friction.contacts[row.range.clone()] {
+                let push = scale(dt * c.area, &c.along(&lacks));
+                let group = c.group as usize;
+                let read = all || self.walls.groups[group].wants_force;
+                for k in 0..D {
+                    v[k] -= push[k] / state.grains.mass[row.i];
+                    state.impulse[group][k] += if read { push[k] } else { 0.0 };
+                }
             }
         }
     }

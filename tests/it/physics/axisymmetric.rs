@@ -251,3 +251,47 @@ fn rings_have_the_same_bits_on_any_number_of_threads_and_after_a_restore() {
     other.step();
     assert_eq!(one.component.state_hash(), other.component.state_hash());
 }
+
+/// A round tank of water begins at rest: what its floor bears does not swing.
+#[test]
+fn a_round_tank_of_water_starts_at_rest() {
+    let text = r#"
+name = "tank"
+dimension = "axisymmetric"
+[domain]
+lower = [0, "-50 mm"]
+upper = ["150 mm", "150 mm"]
+[numerics]
+spacing = "5 mm"
+[materials.water]
+law = "fluid"
+preset = "water"
+[bodies.water]
+material = "water"
+box = { lower = [0, 0], upper = ["100 mm", "60 mm"] }
+[walls.floor]
+polyline = [[0, 0], ["100 mm", 0]]
+[walls.side]
+polyline = [["100 mm", 0], ["100 mm", "100 mm"]]
+slip = "free_slip"
+[gauges.floor]
+kind = "force"
+on = "wall.floor"
+[gauges.side]
+kind = "force"
+on = "wall.side"
+[run]
+step = "5 ms"
+until = "1 s"
+"#;
+    let mut unit = Unit::new(&scene::parse("tank", text).unwrap());
+    let weight = 9.81 * unit.get("mass.initial");
+    let mut most = 0.0f64;
+    for k in 1..=60 {
+        unit.run_to(0.005 * f64::from(k));
+        let down = unit.get("gauge.floor.force_y") + unit.get("gauge.side.force_y");
+        most = most.max((down / weight + 1.0).abs());
+    }
+    println!("floor and side bear the weight to {most:.4}");
+    assert!(most < 0.02, "{most}");
+}
