@@ -4,7 +4,7 @@ use super::endpoints::BadEndpoint;
 use crate::component;
 use crate::wire::keys::BadInstance;
 
-/// What Zenoh says, without the places in its source that it adds to every error (` at /home/.../lib.rs:1507.`): they are
+/// What Zenoh says, without the places in its source that it adds to every error (` at FILE:1507.`): they are
 /// those of the machine that built this program.
 pub(super) fn words(error: impl std::fmt::Display) -> String {
     let mut text = error.to_string();
