@@ -14,10 +14,6 @@ const HELD: f64 = 0.5;
 const TOUCH: f64 = 0.25;
 const PRESSED: f64 = 0.75;
 
-/// Way left to close, over the spacing, above which a fluid without yield stress gives way: one drop at the lip held a gate as long as it
-/// stood there. Below it, a drop has no room to go, and would be shot out like a pip.
-const SILL: f64 = 1.5;
-
 /// A face that lets rows of particles in.
 #[derive(Clone, Debug)]
 pub struct Source<const D: usize> {
@@ -93,7 +89,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Whether grains stand against the leading edge of a plate that wants to close, along a share [`HELD`] of it in space: fewer are
-    /// pushed aside, and so are fluids that flow, but for the last of the way ([`SILL`]).
+    /// pushed aside, and so are fluids that flow, of which one drop at the lip held a gate as long as it stood there.
     fn is_blocked(&self, state: &State<D>, gate: usize) -> bool {
         let (plate, opening) = (&self.plates[gate], state.gates[gate].opening);
         let stops = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing, TOUCH);
@@ -106,11 +102,8 @@ impl<const D: usize> Solver<D> {
         });
         let spacing = self.numerics.spacing;
         let mut held = vec![false; plate.pieces(spacing)];
-        let gives_way = |phase: u8| {
-            opening * plate.length > SILL * spacing && self.materials[phase as usize].flows()
-        };
         for (x, phase) in state.grains.position.iter().zip(&state.grains.phase) {
-            if stops(x) && !gives_way(*phase) {
+            if stops(x) && !self.materials[*phase as usize].flows() {
                 held[plate.piece_of(x, spacing)] = true;
             }
         }

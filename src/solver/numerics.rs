@@ -49,7 +49,7 @@ pub struct Numerics {
     pub acoustic_steps: u32,
     /// Exact yield or plain cap.
     pub yield_form: YieldForm,
-    /// Viscosity cap: eta <= cap_time mu_s p [s]. With the plain cap a plug creeps at up to 1/cap_time; default 20 c0/g.
+    /// Viscosity cap: eta <= cap_time (c + mu_s p) [s]. With the plain cap a plug creeps at up to 1/cap_time; default 20 c0/g.
     /// With the exact yield it is the penalty of the augmented Lagrangian in a plug; default 2 c0/g.
     pub cap_time: f64,
     /// Density diffusion delta [1]; default 0.1, 0 switches it off.
@@ -58,7 +58,7 @@ pub struct Numerics {
     pub diffusion_gate_time: f64,
     /// Relaxation time of the strain rate in the equation of state [s].
     pub strain_relaxation_time: f64,
-    /// Share of the viscous stress carried by the pair operator against zero-energy modes [1]; default 0.05.
+    /// Share of the viscous stress carried by the pair operator against zero-energy modes [1]; default 0.05, 0.5 where all materials are Newtonian fluids.
     pub pair_viscosity_share: f64,
     /// Artificial viscosity alpha of [A] eq. 38 [1]; default 0.
     pub artificial_viscosity: f64,

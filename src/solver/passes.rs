@@ -368,7 +368,7 @@ fn sand<const D: usize>(geometry: Geometry, side: usize, jitter: f64) -> (Plan<D
     (plan, state)
 }
 
-/// The defaults of scenes for a fall of 0.4 m.
+/// Of a scene with a fall of 0.4 m, in steps of one acoustic step: each sweep once.
 fn numerics() -> Numerics {
     Numerics {
         spacing: SPACING,

@@ -9,6 +9,7 @@ mod collapse;
 mod conservation;
 mod drops;
 mod films;
+mod gates;
 mod gliding;
 mod incline;
 mod leaks;

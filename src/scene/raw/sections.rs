@@ -105,7 +105,7 @@ table! {
         optional r#yield: YieldWord, default "exact";
         /// Iterations of the exact yield in each internal step; they start from the last step's, so 1 is usual.
         optional yield_iterations: Whole, in Range::within(1.0, 100.0), default 1;
-        /// Cap of the viscosity: at most cap_time x mu_s x pressure. With a capped yield a plug creeps at up to 1/cap_time, and 20 c0/g is taken if this is left out; with the exact yield it sets how fast the iteration goes, and 2 c0/g is taken.
+        /// Cap of the viscosity: at most cap_time x (cohesion + mu_s x pressure). With a capped yield a plug creeps at up to 1/cap_time, and 20 c0/g is taken if this is left out; with the exact yield it sets how fast the iteration goes, and 2 c0/g is taken.
         optional cap_time: Time, in Range::above(0.0);
         /// Density diffusion; 0 switches it off.
         optional density_diffusion: Ratio, in Range::within(0.0, 1.0), default 0.1;

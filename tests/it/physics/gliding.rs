@@ -1,4 +1,4 @@
-//! Loose particles on rough walls stop as Coulomb says: no pressure bears them, the push by place of (W5) does.
+//! Loose particles on rough walls rub as Coulomb says: single ones, which no pressure bears but the push by place of (W5), and heaps.
 
 use super::Unit;
 use sandgate::scene;
@@ -82,5 +82,76 @@ fn loose_particles_on_rough_walls_stop() {
         let (way, ..) = glide(dimension, "slip = \"free_slip\"");
         // A ring that is still dense is also braked by its hoop stress.
         assert!((0.7..0.81).contains(&way), "{dimension}, smooth: {way} m");
+    }
+}
+
+/// Loose sand that slides rubs with mu_w times what it weighs, too, though its lowest rows hop: a heap on a slope steeper than it bears, in steps of one and of two acoustic
+/// steps, in the plane and in space.
+#[test]
+fn loose_sand_slides_as_coulomb_says() {
+    let share = |space: bool, steps: u32| {
+        let dimension = if space { 3 } else { 2 };
+        let point = |x: f64, y: f64| {
+            if space {
+                format!("[{x}, {}, {y}]", 0.5 * x)
+            } else {
+                format!("[{x}, {y}]")
+            }
+        };
+        let up = if space { "[0, 0, 1]" } else { "[0, 1]" };
+        let text = format!(
+            r#"
+name = "loose"
+dimension = {dimension}
+[domain]
+lower = {}
+upper = {}
+slope = "35 deg"
+[numerics]
+spacing = "12 mm"
+expected_speed = 2
+acoustic_steps = {steps}
+[materials.sand]
+law = "constant_friction"
+friction_angle = "38 deg"
+density = 1600
+[bodies.heap]
+material = "sand"
+box = {{ lower = {}, upper = {} }}
+[walls.bed]
+plane = {{ point = {}, normal = {up} }}
+slip = "friction"
+wall_friction = 0.4
+[gauges.bed]
+kind = "force"
+on = "wall.bed"
+[run]
+step = "10 ms"
+until = "1 s"
+"#,
+            point(-0.5, -0.1),
+            point(2.5, 0.4),
+            point(0.0, 0.0),
+            point(0.24, 0.1),
+            point(0.0, 0.0),
+        );
+        let mut unit = Unit::new(&scene::parse("loose", &text).unwrap());
+        unit.run_to(0.2);
+        let (mut along, mut down) = (0.0, 0.0);
+        for k in 1..=30 {
+            unit.run_to(0.2 + 0.01 * f64::from(k));
+            along += unit.get("gauge.bed.force_x");
+            down -= unit.get(if space {
+                "gauge.bed.force_z"
+            } else {
+                "gauge.bed.force_y"
+            });
+        }
+        along / down
+    };
+    for (space, steps) in [(false, 1), (false, 2), (true, 2)] {
+        let mu = share(space, steps);
+        println!("space {space}, {steps} acoustic steps: {mu:.4}");
+        assert!(mu > 0.38 && mu < 0.41, "{mu}");
     }
 }
