@@ -4,7 +4,7 @@ use super::{Friction, Material, Rheology};
 
 impl Material {
     /// eta0 + tau_y (1 - exp(-m_p gamma))/gamma, eta0 = (tau - tau_y)/gamma, with
-    /// exp(-m_p gamma) = exp(-m0 gamma) (1 + eta0(tau_0)/tau_0 gamma)/(1 + eta0(tau_y)/tau_y gamma) [Pa s]:
+    /// exp(-m_p gamma) = exp(-m0 gamma) (1 + eta0(tau_y)/tau_y gamma)/(1 + eta0(tau_0)/tau_0 gamma) [Pa s]:
     /// the differential equation (52) solved in closed form. gamma >= 0 [1/s], p [Pa], m0 > 0 [s], tau_0 > 0 [Pa].
     #[must_use]
     pub fn regularised_viscosity(&self, gamma: f64, p: f64, m0: f64, tau_0: f64) -> f64 {
@@ -26,9 +26,10 @@ impl Material {
         let p_0 = ((tau_0 - self.cohesion) / self.law.static_friction()).max(f64::MIN_POSITIVE);
         let reference = self.viscosity_above_yield(gamma, p_0) / tau_0;
         // ln of the factor that makes the relative error independent of pressure; m_p >= 0.
-        let shift = (reference * gamma).ln_1p() - (eta0 / tau_y * gamma).ln_1p();
+        let own = eta0 / tau_y;
+        let shift = (own * gamma).ln_1p() - (reference * gamma).ln_1p();
         let exponent = (-m0 * gamma + shift).min(0.0);
-        let start = (m0 + eta0 / tau_y - reference).max(0.0);
+        let start = (m0 + reference - own).max(0.0);
         eta0 + tau_y * delivered(exponent, gamma, start)
     }
 
@@ -75,6 +76,36 @@ mod tests {
         let ratio = m.regularised_viscosity(g, p, 1.2, 795.0) * g / m.shear_stress(g, p, 1.0);
         assert!((ratio - 1.0).abs() < 1e-3);
     }
+
+    /// [A] (51): what exp(-m_p gamma) leaves of the shear stress is the same share at every pressure.
+    #[test]
+    fn the_share_that_is_missing_is_the_same_at_every_pressure() {
+        let m = Material::sand_04();
+        let mu_s = m.law.static_friction();
+        for gamma in [1e-3, 1.0, 5.0] {
+            let missing = |tau_y: f64| {
+                let p = tau_y / mu_s;
+                let stress = m.regularised_viscosity(gamma, p, 1.2, 795.0) * gamma;
+                1.0 - stress / m.shear_stress(gamma, p, 1.0)
+            };
+            let at_reference = missing(795.0);
+            assert!(at_reference > 1e-4, "{at_reference}");
+            for tau_y in [10.0, 100.0, 3000.0] {
+                let ratio = missing(tau_y) / at_reference;
+                assert!((ratio - 1.0).abs() < 1e-6, "{gamma} {tau_y}: {ratio}");
+            }
+        }
+        // At rest (A.55): m_p = m0 + eta0(tau_0)/tau_0 - eta0(tau_y)/tau_y.
+        let eta0 = |tau: f64| m.shear_stress_slope(0.0, tau / mu_s, 1.0);
+        let tau_y = 100.0;
+        let m_p = 1.2 + eta0(795.0) / 795.0 - eta0(tau_y) / tau_y;
+        let found = m.regularised_viscosity(0.0, tau_y / mu_s, 1.2, 795.0);
+        assert!(
+            (found / (eta0(tau_y) + tau_y * m_p) - 1.0).abs() < 1e-9,
+            "{found}"
+        );
+    }
+
     #[test]
     fn other_materials_get_their_stress_in_flow_and_no_more_than_the_cap_at_rest() {
         let sticky = Material {
