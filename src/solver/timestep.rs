@@ -51,7 +51,14 @@ impl<const D: usize> Solver<D> {
         let mut best = (self.numerics.longest_step(), StepBound::Acoustic);
         let motion = self.motion_bound().min(self.gate_bound(state, wanted));
         if motion < best.0 {
-            best = (motion, StepBound::Motion);
+            // Fast motion asks for one acoustic step, and that is then what bounds.
+            let acoustic = motion == self.numerics.acoustic_step();
+            best.0 = motion;
+            best.1 = if acoustic {
+                StepBound::Acoustic
+            } else {
+                StepBound::Motion
+            };
         }
         let smallest = 1e-6 * self.numerics.longest_step();
         if best.0 < smallest {
