@@ -3,7 +3,7 @@
 //! Symbols: e deviatoric strain rate with e_zz = -div u/3 kept in the plane ([B] eq. 5), gamma = sqrt(2 e:e), K consistency,
 //! n flow index, m stiffening time, tau_0 = cohesion + alpha p_eff ([B] eq. 7 with its sign mended).
 
-use crate::math::{Tensor, norm, trace};
+use crate::math::{Tensor, Vector, add, norm, scale, sub, trace};
 use crate::solver::{Solver, SolverError, StepBound};
 use crate::state::State;
 
@@ -77,6 +77,21 @@ impl<const D: usize> Solver<D> {
         });
     }
 
+    /// What |u| of (21) is against: the walls, which are fixed; where there are none the mean velocity, as in every inertial frame.
+    fn frame_of_paper_b(&self, state: &State<D>) -> Vector<D> {
+        let mut momentum = [0.0; D];
+        if !self.walls.is_empty() {
+            return momentum;
+        }
+        let grains = &state.grains;
+        let mut mass = 0.0;
+        for (m, v) in grains.mass.iter().zip(&grains.velocity) {
+            momentum = add(&momentum, &scale(*m, v));
+            mass += m;
+        }
+        scale(1.0 / mass, &momentum)
+    }
+
     /// [B] eq. 21: dt <= min(CFL h/(c + h max_j pi_ij), CFL h/|u|, CFL sqrt(h/|a|), 0.125 rho h^2/eta).
     pub(in crate::solver) fn bound_paper_b(
         &self,
@@ -84,6 +99,7 @@ impl<const D: usize> Solver<D> {
     ) -> Result<(f64, StepBound), SolverError> {
         let (h, courant) = (self.kernel.h, self.numerics.courant);
         let grains = &state.grains;
+        let frame = self.frame_of_paper_b(state);
         let mut best = (self.numerics.longest_step(), StepBound::Acoustic);
         let mut offer = |step: f64, bound: StepBound| {
             // One that is not a number is kept, and refused below.
@@ -103,7 +119,8 @@ impl<const D: usize> Solver<D> {
                 courant * h / (c + h * forces.approach_rate),
                 StepBound::Acoustic,
             );
-            let (u, a) = (norm(&grains.velocity[i]), norm(&forces.acceleration));
+            let u = norm(&sub(&grains.velocity[i], &frame));
+            let a = norm(&forces.acceleration);
             if u > 0.0 {
                 offer(courant * h / u, StepBound::Motion);
             }
