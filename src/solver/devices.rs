@@ -1,6 +1,6 @@
 //! Moving walls, gates, inflows and outflows: what moves, adds and takes out between two internal steps.
 
-use crate::math::{CHUNK, Vector, add, dot, norm, scale, sub};
+use crate::math::{CHUNK, Vector, add, norm, scale};
 use crate::state::State;
 
 use super::Solver;
@@ -173,97 +173,5 @@ impl<const D: usize> Solver<D> {
             }
         }
         came
-    }
-
-    /// Impulse of the material on walls whose force somebody reads, or on all of them, over one step [N s].
-    pub(super) fn add_reactions(&mut self, state: &mut State<D>, dt: f64, all: bool) {
-        if !all && !self.walls.groups.iter().any(|g| g.wants_force) {
-            return;
-        }
-        let share = self.numerics.pair_viscosity_share;
-        let support = self.kernel.support();
-        let dissipation = 2.0 * (D as f64 + 2.0);
-        for (b, block) in self.lists.blocks.iter().enumerate() {
-            let mut wall_rows = block.wall_rows.iter().peekable();
-            for row in 0..block.rows() {
-                let i = b * CHUNK + row;
-                let seen = wall_rows.next_if(|w| w.row as usize == row);
-                let flat = seen.is_some_and(|w| w.flat);
-                let barrier = seen.map_or(0.0, |w| w.barrier);
-                let (xi, vi) = (&state.grains.position[i], &self.viscous.velocity[i]);
-                if block.wall_row(row).is_empty() {
-                    continue;
-                }
-                let tau = self.viscous.stress(i);
-                // dt a of friction, for each part of the push.
-                let grip = seen.filter(|w| w.grip != [0.0; D]).map(|w| {
-                    let size2 = dot(&w.push, &w.push);
-                    (
-                        scale(dt * barrier * state.grains.mass[i] / size2, &w.grip),
-                        w.push,
-                    )
-                });
-                let carried = seen.map_or([0.0; D], |w| w.carried);
-                let leant = seen.map_or([0.0; D], |w| self.leant(state, i, &w.lean));
-                for &w in block.wall_row(row) {
-                    let group = self.walls.group[w as usize] as usize;
-                    let weight = self.walls.weight[w as usize];
-                    let (x, r) = self.wall_offset(xi, w);
-                    if !(all || self.walls.groups[group].wants_force)
-                        || weight == 0.0
-                        || r >= support
-                        || r == 0.0
-                    {
-                        continue;
-                    }
-                    let volume = self.volume[i];
-                    let vf = self.wall_volume(i, w, weight) * self.kernel.f(r);
-                    let g = scale(vf, &x);
-                    // On the particle: -2 p g + 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w), times V_i.
-                    let projection = self.wall_projection(xi, w, state);
-                    let seen = |a: Vector<D>| -> Vector<D> {
-                        projection.map_or(a, |n| scale(dot(&n, &a), &n))
-                    };
-                    let push = if flat { seen(g) } else { g };
-                    let mut force = scale(-2.0 * self.mean_pressure(i), &push);
-                    if let Some(uneven) = self.uneven_pressure.get(i) {
-                        force = add(&force, &scale(2.0, &crate::math::apply(uneven, &push)));
-                    }
-                    force = add(&force, &scale(2.0, &seen(crate::math::apply(&tau, &g))));
-                    let pg = seen(g);
-                    let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];
-                    let drag =
-                        -2.0 * share * c * dot(&pg, &sub(vi, &self.walls.velocity[w as usize]));
-                    force = add(&force, &scale(drag, &pg));
-                    let mut part = [0.0; D];
-                    if self.has_fluids && projection.is_none() {
-                        // Each point's part of K, as it was counted.
-                        let n = self.wall_normal(xi, w, state);
-                        let along = sub(&leant, &scale(dot(&n, &leant), &n));
-                        part = scale(-vf * dot(&n, &x).powi(2), &along);
-                    }
-                    if carried != [0.0; D] {
-                        // Each point's part of L.
-                        let share = -vf * dt * state.grains.mass[i] * dot(&x, &carried);
-                        part = add(&part, &scale(share, &x));
-                    }
-                    if barrier > 0.0 {
-                        let mut away = self.barrier.slope(&x, r, weight);
-                        if let Some((x, r)) = self.wall_image(xi, w) {
-                            away = add(&away, &self.barrier.slope(&x, r, weight));
-                        }
-                        let impulse = -dt * barrier * state.grains.mass[i];
-                        part = add(&part, &scale(impulse, &away));
-                        if let Some((grip, push)) = &grip {
-                            part = add(&part, &scale(-dot(&away, push), grip));
-                        }
-                    }
-                    for k in 0..D {
-                        state.impulse[group][k] -= dt * self.width * volume * force[k] + part[k];
-                    }
-                }
-            }
-        }
-        self.add_friction_reactions(state, dt, all);
     }
 }

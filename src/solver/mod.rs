@@ -10,6 +10,7 @@
 mod acoustic;
 mod barrier;
 mod constitutive;
+mod corners;
 mod devices;
 mod equation_of_state;
 mod error;
@@ -38,6 +39,7 @@ mod plan;
 mod plastic;
 mod pore;
 mod pressure;
+mod reactions;
 mod record;
 mod rest;
 mod ring;

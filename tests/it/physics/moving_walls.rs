@@ -50,7 +50,7 @@ fn a_drum_pushes_as_it_is_pushed() {
         ("no slip", ""),
         ("friction", "slip = \"friction\"\nwall_friction = 0.5"),
     ] {
-        for (tolerance, most) in [("1e-13", 1e-11), ("3e-4", 1e-3)] {
+        for tolerance in ["1e-13", "3e-4", "1e-2"] {
             let spacing = format!("spacing = \"6 mm\"\nsolver_tolerance = {tolerance}");
             let motion = format!("motion = \"rigid\"\n{slip}");
             let mut bench = Bench::new(&case(
@@ -73,7 +73,7 @@ fn a_drum_pushes_as_it_is_pushed() {
                 "{name}, tolerance {tolerance}: {:.1e} of the impulse of gravity",
                 error / -fall[1]
             );
-            assert!(error < -most * fall[1]);
+            assert!(error < -1e-10 * fall[1]);
         }
     }
 }

@@ -1,0 +1,239 @@
+//! Whose a push is where two walls meet (docs/theory.md, "Forces on walls").
+//!
+//! A wall's points behind the face of another one stand for the corner of both: were either wall to move along its normal, they
+//! would come along. So a push f on such a point does the work f.v with v.n_A = v_A, v.n_B = v_B, and wall A bears (f.m_A) n_A, with
+//! the dual vectors m of the normals: m_A.n_A = 1, m_A.n_B = 0. Counted to one wall alone, the other's thrust lacks 0.3 dp of the
+//! pressure at its foot.
+//!
+//! Symbols: n unit normals towards the material, dp spacing.
+
+use crate::math::{Vector, dot, norm, scale, sub};
+
+/// Largest |n_A.n_B| of faces that make a corner [1]: beyond it they go on from each other.
+const PARALLEL: f64 = 0.9;
+
+/// A particle's push on one wall point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Push<const D: usize> {
+    pub group: u16,
+    /// Unit normal of the point's face, towards the material.
+    pub normal: Vector<D>,
+    /// From the particle to the point [m].
+    pub to: Vector<D>,
+    /// On the particle, by the point [N s].
+    pub impulse: Vector<D>,
+}
+
+/// A face as one particle sees it.
+struct Face<const D: usize> {
+    group: u16,
+    normal: Vector<D>,
+    /// Its nearest row: the largest n.to of its points [m].
+    row: f64,
+}
+
+impl<const D: usize> Face<D> {
+    fn has(&self, push: &Push<D>) -> bool {
+        self.group == push.group && self.normal == push.normal
+    }
+}
+
+/// Hands on what points behind two faces bear to the walls that it belongs to. What one particle pushes stays the same in sum.
+pub(super) fn part_at_corners<const D: usize>(pushes: &mut Vec<Push<D>>, spacing: f64) {
+    let Some(first) = pushes.first() else {
+        return;
+    };
+    if pushes.iter().all(|p| p.group == first.group) {
+        return;
+    }
+    let faces = faces(pushes);
+    let shares = shares(&faces, pushes, spacing);
+    for n in 0..pushes.len() {
+        let push = pushes[n];
+        let Some(own) = faces.iter().position(|f| f.has(&push)) else {
+            continue;
+        };
+        let mut met: Vec<(f64, &Face<D>)> = Vec::with_capacity(D);
+        for (share, face) in shares[own].iter().zip(&faces) {
+            let behind = dot(&face.normal, &push.to) < face.row + 0.5 * spacing;
+            if *share > 0.0 && behind {
+                keep_best(&mut met, (*share, face));
+            }
+        }
+        for (k, (share, face)) in met.iter().enumerate() {
+            let others = met.iter().enumerate().filter(|(m, _)| *m != k);
+            let others = std::iter::once(push.normal).chain(others.map(|(_, (_, f))| f.normal));
+            let Some(dual) = dual(&face.normal, others) else {
+                continue;
+            };
+            let impulse = scale(share * dot(&dual, &push.impulse), &face.normal);
+            pushes[n].impulse = sub(&pushes[n].impulse, &impulse);
+            pushes.push(Push {
+                group: face.group,
+                impulse,
+                ..push
+            });
+        }
+    }
+}
+
+fn faces<const D: usize>(pushes: &[Push<D>]) -> Vec<Face<D>> {
+    let mut faces: Vec<Face<D>> = Vec::new();
+    for push in pushes {
+        let row = dot(&push.normal, &push.to);
+        match faces.iter_mut().find(|f| f.has(push)) {
+            Some(face) => face.row = face.row.max(row),
+            None => faces.push(Face {
+                group: push.group,
+                normal: push.normal,
+                row,
+            }),
+        }
+    }
+    faces
+}
+
+/// How much of a corner each face (columns) makes with each other one (rows) [1]: all of it where it stands on it, nothing where it ends a
+/// row or more above it, as a lifted gate does.
+fn shares<const D: usize>(faces: &[Face<D>], pushes: &[Push<D>], spacing: f64) -> Vec<Vec<f64>> {
+    let share = |own: &Face<D>, other: &Face<D>| {
+        if own.group == other.group || dot(&own.normal, &other.normal).abs() > PARALLEL {
+            return 0.0;
+        }
+        let points = pushes.iter().filter(|p| other.has(p));
+        let foot = points.fold(f64::INFINITY, |least, p| least.min(dot(&own.normal, &p.to)));
+        (2.0 - (foot - own.row) / spacing).clamp(0.0, 1.0)
+    };
+    let row = |own| faces.iter().map(|other| share(own, other)).collect();
+    faces.iter().map(row).collect()
+}
+
+/// Adds a face to those that a point's push is parted among: one of each wall, at most one fewer than dimensions.
+fn keep_best<'a, const D: usize>(met: &mut Vec<(f64, &'a Face<D>)>, new: (f64, &'a Face<D>)) {
+    let full = met.len() + 1 >= D;
+    match met.iter_mut().find(|(_, f)| f.group == new.1.group) {
+        Some(same) if new.0 > same.0 => *same = new,
+        Some(_) => {}
+        None if full => {}
+        None => met.push(new),
+    }
+}
+
+/// The vector m in the span of `n` and `others` with m.n = 1 and m.o = 0 for all others; `None` where `n` is nearly one of their sums.
+fn dual<const D: usize>(
+    n: &Vector<D>,
+    others: impl Iterator<Item = Vector<D>>,
+) -> Option<Vector<D>> {
+    let mut basis: Vec<Vector<D>> = Vec::with_capacity(D);
+    let without = |v: &Vector<D>, basis: &[Vector<D>]| {
+        basis.iter().fold(*v, |v, b| sub(&v, &scale(dot(&v, b), b)))
+    };
+    for other in others {
+        let rest = without(&other, &basis);
+        let length = norm(&rest);
+        if length > 1.0 - PARALLEL {
+            basis.push(scale(1.0 / length, &rest));
+        }
+    }
+    let m = without(n, &basis);
+    let along = dot(&m, n);
+    (along > 1.0 - PARALLEL).then(|| scale(1.0 / along, &m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::add;
+
+    const DP: f64 = 0.1;
+
+    /// What a particle at `x` pushes with 1/r^2 away from each of the points.
+    fn pushes<const D: usize>(
+        x: Vector<D>,
+        points: impl Iterator<Item = (u16, Vector<D>, Vector<D>)>,
+    ) -> Vec<Push<D>> {
+        let push = |(group, normal, point)| {
+            let to = sub(&point, &x);
+            let impulse = scale(-1.0 / dot(&to, &to), &to);
+            Push {
+                group,
+                normal,
+                to,
+                impulse,
+            }
+        };
+        points.map(push).collect()
+    }
+
+    fn sum<const D: usize>(pushes: &[Push<D>], of: impl Fn(u16) -> bool) -> Vector<D> {
+        let own = pushes.iter().filter(|p| of(p.group));
+        own.fold([0.0; D], |sum, p| add(&sum, &p.impulse))
+    }
+
+    /// A gate (1) `lift` rows above a floor (0) that goes on under it.
+    fn sluice(lift: f64) -> impl Iterator<Item = (u16, Vector<2>, Vector<2>)> {
+        let place = |k: i32| (f64::from(k) + 0.5) * DP;
+        let floor =
+            (-4..6).flat_map(move |a| (-4..0).map(move |b| (0, [0.0, 1.0], [place(a), place(b)])));
+        let gate = (-4..0).flat_map(move |a| {
+            (0..6).map(move |b| (1, [1.0, 0.0], [place(a), place(b) + lift * DP]))
+        });
+        floor.chain(gate)
+    }
+
+    #[test]
+    fn what_lies_under_a_gate_is_of_both_and_the_sum_stays() {
+        let x = [0.5 * DP, 0.5 * DP];
+        let before = pushes(x, sluice(0.0));
+        let mut after = before.clone();
+        part_at_corners(&mut after, DP);
+        let under = before.iter().filter(|p| p.group == 0 && p.to[0] < -x[0]);
+        let handed = under.fold(0.0, |sum, p| sum + p.impulse[0]);
+        let gate = sum(&after, |g| g == 1);
+        assert!((gate[0] - sum(&before, |g| g == 1)[0] - handed).abs() < 1e-9 * handed);
+        assert!(handed > 1.0, "{handed}");
+        for k in 0..2 {
+            let difference = sum(&after, |_| true)[k] - sum(&before, |_| true)[k];
+            assert!(difference.abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_gate_that_is_lifted_by_a_row_has_no_corner() {
+        let at = |lift| {
+            let mut pushes = pushes([0.5 * DP, 0.5 * DP], sluice(lift));
+            part_at_corners(&mut pushes, DP);
+            sum(&pushes, |g| g == 0)[0]
+        };
+        let alone = sum(&pushes([0.5 * DP, 0.5 * DP], sluice(1.0)), |g| g == 0)[0];
+        assert_eq!(at(1.0), alone);
+        // In between by its share.
+        assert!((at(0.5) - 0.5 * (at(0.0) + alone)).abs() < 1e-9 * at(0.0).abs().max(1.0));
+    }
+
+    #[test]
+    fn what_a_moving_wall_takes_along_does_its_work() {
+        // Two faces at 60 degrees, and a push on a point behind both.
+        let (a, b) = ([1.0, 0.0], [-0.5, 0.75f64.sqrt()]);
+        let push = [0.3, -0.8];
+        let (ma, mb) = (
+            dual(&a, std::iter::once(b)).unwrap(),
+            dual(&b, std::iter::once(a)).unwrap(),
+        );
+        assert!((dot(&ma, &a) - 1.0).abs() < 1e-12 && dot(&ma, &b).abs() < 1e-12);
+        let whole = add(&scale(dot(&ma, &push), &a), &scale(dot(&mb, &push), &b));
+        assert!(norm(&sub(&whole, &push)) < 1e-12);
+    }
+
+    #[test]
+    fn faces_that_go_on_from_each_other_keep_their_own() {
+        let place = |k: i32| (f64::from(k) + 0.5) * DP;
+        let floors = (-4..4).flat_map(|a| {
+            (-4..0).map(move |b| (u16::from(a < 0), [0.0, 1.0], [place(a), place(b)]))
+        });
+        let before = pushes([0.02, 0.05], floors);
+        let mut after = before.clone();
+        part_at_corners(&mut after, DP);
+        assert_eq!(after.len(), before.len());
+    }
+}
