@@ -4,6 +4,13 @@ use std::ptr;
 
 use super::*;
 
+/// All functions of the plain C interface.
+mod capi {
+    pub(super) use crate::capi::state::*;
+    pub(super) use crate::capi::variables::*;
+    pub(super) use crate::capi::*;
+}
+
 #[rustfmt::skip]
 pub(super) fn calls_of_c() -> Vec<Row> {
     calls! {
