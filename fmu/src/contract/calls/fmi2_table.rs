@@ -4,6 +4,13 @@ use std::ptr;
 
 use super::*;
 
+/// All functions of FMI 2.
+mod fmi2 {
+    pub(super) use crate::fmi2::state::*;
+    pub(super) use crate::fmi2::variables::*;
+    pub(super) use crate::fmi2::*;
+}
+
 #[rustfmt::skip]
 pub(super) fn calls_of_fmi2() -> Vec<Row> {
     calls! {

@@ -7,6 +7,8 @@ use super::*;
 /// All functions of FMI 3.
 mod fmi3 {
     pub(super) use crate::fmi3::absent::*;
+    pub(super) use crate::fmi3::state::*;
+    pub(super) use crate::fmi3::variables::*;
     pub(super) use crate::fmi3::*;
 }
 
