@@ -1,4 +1,5 @@
 //! State, solver and gauges of a scene in D dimensions: the one implementation of [`Engine`].
+
 mod sight;
 
 use std::sync::OnceLock;
