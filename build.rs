@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Modules of rank 0 to 6 in ARCHITECTURE.md; what lies above them changes no bit of a result.
 const MODULES: [&str; 10] = [
     "math",
-    "units.rs",
+    "units",
     "kernel",
     "material",
     "shape",

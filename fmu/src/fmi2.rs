@@ -1,15 +1,18 @@
-//! FMI 2.0 for co-simulation: all 34 functions of the common and co-simulation part.
+//! FMI 2.0 for co-simulation: all 34 functions of the common and co-simulation part. Here is the life of an instance;
+//! `variables` has its values, `state` its saved states.
 //!
 //! Names and order of arguments are the standard's (fmi2Functions.h); a test compiles them against that header.
+
+pub(crate) mod state;
+pub(crate) mod variables;
 
 use std::ffi::c_char;
 
 use sandgate::component::{Error, Mode};
 use sandgate::fmi::FmiVersion;
 
-use crate::access::{Flag, get, get_texts, output_derivatives, set, set_texts};
 use crate::fault::{Fault, Status};
-use crate::guard::{Callbacks2, Handle, In, Need, Out, StateHandle, StateSlot, Text};
+use crate::guard::{Callbacks2, Handle, In, Need, Out, Text};
 use crate::instance::{Experiment, Instance, create};
 use crate::log::{Log, Sink, text};
 
@@ -120,225 +123,6 @@ pub(crate) extern "C" fn fmi2Terminate(c: Handle) -> Status {
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2Reset(c: Handle) -> Status {
     c.call("fmi2Reset", Need::Any, Instance::reset).into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2GetReal(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    mut value: Out<f64>,
-) -> Status {
-    c.call("fmi2GetReal", Need::Sound, |i| {
-        get(i, vr.slice(n, "vr")?, &mut value, n, |v: f64| v)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2GetInteger(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    mut value: Out<i32>,
-) -> Status {
-    c.call("fmi2GetInteger", Need::Sound, |i| {
-        get(i, vr.slice(n, "vr")?, &mut value, n, |v: i32| v)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2GetBoolean(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    mut value: Out<i32>,
-) -> Status {
-    c.call("fmi2GetBoolean", Need::Sound, |i| {
-        get(i, vr.slice(n, "vr")?, &mut value, n, |v: Flag| {
-            i32::from(v.number())
-        })
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2GetString(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    mut value: Out<*const c_char>,
-) -> Status {
-    c.call("fmi2GetString", Need::Sound, |i| {
-        get_texts(i, vr.slice(n, "vr")?, &mut value, n)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2SetReal(c: Handle, vr: In<u32>, n: usize, value: In<f64>) -> Status {
-    c.call("fmi2SetReal", Need::Sound, |i| {
-        set::<f64, _>(i, vr.slice(n, "vr")?, value.slice(n, "value")?, Ok)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2SetInteger(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    value: In<i32>,
-) -> Status {
-    c.call("fmi2SetInteger", Need::Sound, |i| {
-        set::<i32, _>(i, vr.slice(n, "vr")?, value.slice(n, "value")?, Ok)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2SetBoolean(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    value: In<i32>,
-) -> Status {
-    c.call("fmi2SetBoolean", Need::Sound, |i| {
-        let (vr, value) = (vr.slice(n, "vr")?, value.slice(n, "value")?);
-        set(i, vr, value, |v| Flag::from_number(v.into()))
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2SetString(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    value: In<Text>,
-) -> Status {
-    c.call("fmi2SetString", Need::Sound, |i| {
-        set_texts(i, vr.slice(n, "vr")?, value.slice(n, "value")?)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2GetFMUstate(c: Handle, mut state: StateSlot) -> Status {
-    c.call("fmi2GetFMUstate", Need::Sound, |i| state.put(i.save()?))
-        .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2SetFMUstate(c: Handle, state: StateHandle) -> Status {
-    c.call("fmi2SetFMUstate", Need::Any, |i| {
-        let state = state.get()?;
-        i.restore(&state.bytes, state.experiment)?;
-        // An instance that comes to its time by a state was told of its end before.
-        i.component.set_stop_time(i.experiment.stop);
-        Ok(())
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2FreeFMUstate(c: Handle, mut state: StateSlot) -> Status {
-    c.call("fmi2FreeFMUstate", Need::Any, |_| {
-        state.free();
-        Ok(())
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2SerializedFMUstateSize(
-    c: Handle,
-    state: StateHandle,
-    mut size: Out<usize>,
-) -> Status {
-    c.call("fmi2SerializedFMUstateSize", Need::Any, |_| {
-        size.write(&[state.get()?.bytes.len()], "size")
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2SerializeFMUstate(
-    c: Handle,
-    state: StateHandle,
-    mut bytes: Out<u8>,
-    size: usize,
-) -> Status {
-    c.call("fmi2SerializeFMUstate", Need::Any, |_| {
-        bytes.write(state.get()?.sized(size)?, "serializedState")
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2DeSerializeFMUstate(
-    c: Handle,
-    bytes: In<u8>,
-    size: usize,
-    mut state: StateSlot,
-) -> Status {
-    c.call("fmi2DeSerializeFMUstate", Need::Any, |i| {
-        state.put(i.deserialize(bytes.slice(size, "serializedState")?)?)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2GetDirectionalDerivative(
-    c: Handle,
-    _unknown: In<u32>,
-    _n_unknown: usize,
-    _known: In<u32>,
-    _n_known: usize,
-    _dv_known: In<f64>,
-    _dv_unknown: Out<f64>,
-) -> Status {
-    c.not_provided(
-        "fmi2GetDirectionalDerivative",
-        "providesDirectionalDerivative",
-    )
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2SetRealInputDerivatives(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    order: In<i32>,
-    value: In<f64>,
-) -> Status {
-    c.call("fmi2SetRealInputDerivatives", Need::Sound, |i| {
-        let vr = vr.slice(n, "vr")?;
-        if let Some(order) = order.slice(n, "order")?.iter().find(|order| **order != 1) {
-            return Err(Fault::border(format!(
-                "order: found {order}, allowed 1 (a slope over the next step)"
-            )));
-        }
-        let slopes = value.slice(n, "value")?;
-        i.set_slopes(vr, slopes)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi2GetRealOutputDerivatives(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    order: In<i32>,
-    mut value: Out<f64>,
-) -> Status {
-    c.call("fmi2GetRealOutputDerivatives", Need::Sound, |i| {
-        let (vr, order) = (vr.slice(n, "vr")?, order.slice(n, "order")?);
-        output_derivatives(i, vr, order, &mut value, n)
-    })
-    .into()
 }
 
 #[unsafe(no_mangle)]

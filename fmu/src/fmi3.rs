@@ -1,19 +1,20 @@
 //! FMI 3.0: all 75 functions. Co-simulation is provided; what belongs to model exchange, scheduled execution, events,
-//! clocks and structural parameters is there and answers Error with a message (`absent`).
+//! clocks and structural parameters is there and answers Error with a message (`absent`). Here is the life of an instance;
+//! `variables` has its values, `state` its saved states.
 //!
 //! Names and order of arguments are the standard's (fmi3Functions.h); a test compiles them against that header.
 
 pub(crate) mod absent;
+pub(crate) mod state;
+pub(crate) mod variables;
 
 use std::ffi::c_char;
 
 use sandgate::fmi::FmiVersion;
 
-use crate::access::{Flag, get, get_texts, output_derivatives, set, set_texts};
 use crate::fault::{Fault, Status};
 use crate::guard::{
-    Environment, Handle, In, IntermediateUpdate3, Logger3, Need, Out, StateHandle, StateSlot, Text,
-    UnusedCallback,
+    Environment, Handle, In, IntermediateUpdate3, Logger3, Need, Out, Text, UnusedCallback,
 };
 use crate::instance::{Instance, create};
 use crate::log::{Log, Sink};
@@ -187,229 +188,6 @@ pub(crate) extern "C" fn fmi3DoStep(
         early_return.write_if_wanted(u8::from(returned_early));
         last_time.write_if_wanted(i.component.time());
         result.map(drop)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3GetFMUState(c: Handle, mut state: StateSlot) -> Status {
-    c.call("fmi3GetFMUState", Need::Sound, |i| state.put(i.save()?))
-        .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3SetFMUState(c: Handle, state: StateHandle) -> Status {
-    c.call("fmi3SetFMUState", Need::Any, |i| {
-        let state = state.get()?;
-        i.restore(&state.bytes, state.experiment)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3FreeFMUState(c: Handle, mut state: StateSlot) -> Status {
-    c.call("fmi3FreeFMUState", Need::Any, |_| {
-        state.free();
-        Ok(())
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3SerializedFMUStateSize(
-    c: Handle,
-    state: StateHandle,
-    mut size: Out<usize>,
-) -> Status {
-    c.call("fmi3SerializedFMUStateSize", Need::Any, |_| {
-        size.write(&[state.get()?.bytes.len()], "size")
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3SerializeFMUState(
-    c: Handle,
-    state: StateHandle,
-    mut bytes: Out<u8>,
-    size: usize,
-) -> Status {
-    c.call("fmi3SerializeFMUState", Need::Any, |_| {
-        bytes.write(state.get()?.sized(size)?, "serializedState")
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3DeserializeFMUState(
-    c: Handle,
-    bytes: In<u8>,
-    size: usize,
-    mut state: StateSlot,
-) -> Status {
-    c.call("fmi3DeserializeFMUState", Need::Any, |i| {
-        state.put(i.deserialize(bytes.slice(size, "serializedState")?)?)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3GetFloat64(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    mut values: Out<f64>,
-    n_values: usize,
-) -> Status {
-    c.visit("fmi3GetFloat64", |i| {
-        get(
-            i,
-            vr.slice(n, "valueReferences")?,
-            &mut values,
-            n_values,
-            |v: f64| v,
-        )
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3GetInt64(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    mut values: Out<i64>,
-    n_values: usize,
-) -> Status {
-    c.visit("fmi3GetInt64", |i| {
-        get(
-            i,
-            vr.slice(n, "valueReferences")?,
-            &mut values,
-            n_values,
-            |v: i64| v,
-        )
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3GetBoolean(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    mut values: Out<u8>,
-    n_values: usize,
-) -> Status {
-    c.visit("fmi3GetBoolean", |i| {
-        get(
-            i,
-            vr.slice(n, "valueReferences")?,
-            &mut values,
-            n_values,
-            Flag::number,
-        )
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3SetFloat64(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    values: In<f64>,
-    n_values: usize,
-) -> Status {
-    c.visit("fmi3SetFloat64", |i| {
-        set::<f64, _>(
-            i,
-            vr.slice(n, "valueReferences")?,
-            values.slice(n_values, "values")?,
-            Ok,
-        )
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3SetInt64(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    values: In<i64>,
-    n_values: usize,
-) -> Status {
-    c.visit("fmi3SetInt64", |i| {
-        set::<i64, _>(
-            i,
-            vr.slice(n, "valueReferences")?,
-            values.slice(n_values, "values")?,
-            Ok,
-        )
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3SetBoolean(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    values: In<u8>,
-    n_values: usize,
-) -> Status {
-    c.visit("fmi3SetBoolean", |i| {
-        let (vr, values) = (
-            vr.slice(n, "valueReferences")?,
-            values.slice(n_values, "values")?,
-        );
-        set(i, vr, values, |v| Flag::from_number(v.into()))
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3GetString(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    mut values: Out<*const c_char>,
-    n_values: usize,
-) -> Status {
-    c.call("fmi3GetString", Need::Sound, |i| {
-        get_texts(i, vr.slice(n, "valueReferences")?, &mut values, n_values)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3SetString(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    values: In<Text>,
-    n_values: usize,
-) -> Status {
-    c.call("fmi3SetString", Need::Sound, |i| {
-        let references = vr.slice(n, "valueReferences")?;
-        set_texts(i, references, values.slice(n_values, "values")?)
-    })
-    .into()
-}
-
-#[unsafe(no_mangle)]
-pub(crate) extern "C" fn fmi3GetOutputDerivatives(
-    c: Handle,
-    vr: In<u32>,
-    n: usize,
-    orders: In<i32>,
-    mut values: Out<f64>,
-    n_values: usize,
-) -> Status {
-    c.visit("fmi3GetOutputDerivatives", |i| {
-        let (vr, orders) = (vr.slice(n, "valueReferences")?, orders.slice(n, "orders")?);
-        output_derivatives(i, vr, orders, &mut values, n_values)
     })
     .into()
 }

@@ -1,16 +1,17 @@
 //! One instance: a component, its caller's logger, and what has to be remembered between calls.
 
+mod life;
+mod state;
+
 use std::ffi::CString;
 
-use sandgate::component::{
-    Causality, Component, Error, Intermediate, Mode, StepReport, VariableTable,
-};
+use sandgate::component::{Causality, Component, VariableTable};
 use sandgate::fmi::{self, FmiVersion};
 use sandgate::scene::{self, Scene};
 
 use crate::access::Values;
 use crate::fault::{Fault, Status};
-use crate::guard::{Door, Handle, SavedState, Text, embedded_scene, shield};
+use crate::guard::{Handle, Text, embedded_scene, shield};
 use crate::journal::Journal;
 use crate::log::{Category, Log, text};
 use crate::updates::Updates;
@@ -192,31 +193,6 @@ impl Instance {
         Ok(self.component.set_texts(references, texts)?)
     }
 
-    /// The instance is at its end: so is its log. What fails now is told to the importer's logger.
-    pub(crate) fn finish(mut self, reason: &str) {
-        self.end_journal(reason);
-        if let Some(complaint) = self.journal.take_complaint() {
-            self.log.say(Category::Warning, Status::Warning, &complaint);
-        }
-    }
-
-    fn end_journal(&mut self, reason: &str) {
-        if self.broken.is_some() {
-            self.journal.end("broken");
-        } else if let Err(fault) = self.journal.finish(&self.component, reason) {
-            let message = fault.to_string();
-            self.log.say(Category::Error, Status::Error, &message);
-        }
-    }
-
-    /// Stepping -> terminated, with the end of the log.
-    pub(crate) fn terminate(&mut self) -> Result<(), Fault> {
-        self.journal.asks(&self.component);
-        self.component.terminate()?;
-        self.journal.reply(&self.component, Ok(()));
-        self.journal.finish(&self.component, "terminated")
-    }
-
     /// Slopes of inputs for the next step.
     pub(crate) fn set_slopes(&mut self, references: &[u32], slopes: &[f64]) -> Result<(), Fault> {
         self.journal.asks_set(&self.component, references, slopes);
@@ -232,159 +208,9 @@ impl Instance {
         }
     }
 
-    /// One communication step.
-    pub(crate) fn step(&mut self, t: f64, h: f64) -> Result<StepReport, Fault> {
-        self.step_with(t, h, |component, _, t, h| component.do_step(t, h))
-    }
-
-    /// One communication step with the importer's intermediate updates, if it wants any.
-    pub(crate) fn step_with_updates(
-        &mut self,
-        t: f64,
-        h: f64,
-        door: &Door<'_>,
-    ) -> Result<StepReport, Fault> {
-        let Some(updates) = self.updates else {
-            return self.step(t, h);
-        };
-        let log = self.log.clone();
-        self.step_with(t, h, |component, journal, t, h| {
-            let mut tell =
-                |moment: &mut Intermediate<'_>| updates.tell(moment, &log, journal, door);
-            component.do_step_watched(t, h, &mut tell)
-        })
-    }
-
-    fn step_with(
-        &mut self,
-        t: f64,
-        h: f64,
-        step: impl FnOnce(&mut Component, &mut Journal, f64, f64) -> Result<StepReport, Error>,
-    ) -> Result<StepReport, Fault> {
-        self.last_step = Status::Error;
-        self.journal.asks_step(&self.component, t, h);
-        self.journal.before_step(&mut self.component)?;
-        let done = step(&mut self.component, &mut self.journal, t, h)
-            .inspect_err(|_| self.journal.failed_step());
-        self.tell_notes();
-        let report = done?;
-        self.journal.step(&self.component, &report, t, h)?;
-        self.last_step = Status::Ok;
-        self.event(|| {
-            format!(
-                "step to t = {} s: {} internal steps, smallest {:e} s, bound by {:?}, {} iterations",
-                report.time,
-                report.substeps,
-                report.smallest_step,
-                report.bound_by,
-                report.iterations
-            )
-        });
-        Ok(report)
-    }
-
-    /// Back to start values. After a breakdown nothing of the old component is used again.
-    pub(crate) fn reset(&mut self) -> Result<(), Fault> {
-        self.journal.asks(&self.component);
-        if self.broken.is_some() {
-            self.component = self.component.anew()?;
-            self.broken = None;
-        } else {
-            self.component.reset()?;
-        }
-        self.journal.reply(&self.component, Ok(()));
-        self.journal.end("reset");
-        self.experiment = Experiment::default();
-        self.last_step = Status::Ok;
-        self.event(|| "reset".to_owned());
-        Ok(())
-    }
-
-    /// Everything, as bytes.
-    pub(crate) fn save(&mut self) -> Result<SavedState, Fault> {
-        self.save_if(|_| Ok(()))
-    }
-
-    /// As `save`, if the caller has room for so many bytes: a state that nobody gets is in no log.
-    pub(crate) fn save_if(
-        &mut self,
-        fits: impl FnOnce(usize) -> Result<(), Fault>,
-    ) -> Result<SavedState, Fault> {
-        self.journal.asks(&self.component);
-        let bytes = self.component.save()?;
-        fits(bytes.len())?;
-        self.journal.saved(&self.component, &bytes)?;
-        Ok(SavedState {
-            bytes,
-            experiment: Some(self.experiment),
-        })
-    }
-
-    /// Goes to a saved state; a refused one changes nothing.
-    pub(crate) fn restore(
-        &mut self,
-        bytes: &[u8],
-        experiment: Option<Experiment>,
-    ) -> Result<(), Fault> {
-        self.journal.asks(&self.component);
-        if self.broken.is_some() {
-            self.component.restore_anew(bytes)?;
-            self.broken = None;
-        } else {
-            self.component.restore(bytes)?;
-        }
-        if let Some(experiment) = experiment {
-            self.experiment = experiment;
-        }
-        self.event(|| format!("state of t = {} s restored", self.component.time()));
-        self.journal.restored(&self.component, bytes)
-    }
-
     /// Threads of the sweeps; 0 means all cores. Results do not depend on it.
     pub(crate) fn set_threads(&mut self, threads: usize) {
         self.component.set_threads(threads);
-    }
-
-    /// Bytes as a state, if this instance could go to it: a bad blob is refused here, not when it is set.
-    pub(crate) fn deserialize(&self, bytes: &[u8]) -> Result<SavedState, Fault> {
-        self.component.check_saved(bytes)?;
-        Ok(SavedState {
-            bytes: bytes.to_vec(),
-            experiment: None,
-        })
-    }
-
-    /// Leaves initialisation: the first gauges are there.
-    pub(crate) fn exit_initialization(&mut self) -> Result<(), Fault> {
-        self.leave_initialization(Mode::Initialization, Component::exit_initialization)
-    }
-
-    /// Enters and leaves initialisation in one.
-    pub(crate) fn initialize(&mut self, start: f64, stop: Option<f64>) -> Result<(), Fault> {
-        self.leave_initialization(Mode::Instantiated, |c| c.initialize(start, stop))
-    }
-
-    /// The log is opened before, so that a path that cannot be written is refused and nothing has happened.
-    fn leave_initialization(
-        &mut self,
-        from: Mode,
-        leave: impl FnOnce(&mut Component) -> Result<(), Error>,
-    ) -> Result<(), Fault> {
-        let opened = self.component.mode() == from && {
-            self.component.settle()?;
-            self.journal.open(&self.component)?
-        };
-        let left = leave(&mut self.component);
-        if opened && left.is_err() {
-            self.journal.discard();
-        }
-        left?;
-        if opened {
-            self.journal.asks(&self.component);
-            self.journal.initialized(&self.component)?;
-        }
-        self.event(|| format!("initialised at t = {} s", self.component.time()));
-        Ok(())
     }
 
     /// Switches log categories by their names.

@@ -2,9 +2,11 @@
 //! file, and, where the library was built with the feature `bus`, publications on Zenoh, if `zenoh.config` is not empty.
 //!
 //! Both begin when initialisation ends and end with terminate, reset or free; they watch and never change a bit, but for
-//! set-points that come over Zenoh. What they hold is the business of `sandgate::record` and `sandgate::bus`.
+//! set-points that come over Zenoh. What they hold is the business of `sandgate::record` and `sandgate::bus`. Here they
+//! are told what happens; `life` begins and ends them, `calls` tells who asked.
 
 mod calls;
+mod life;
 #[cfg(feature = "bus")]
 mod network;
 #[cfg(not(feature = "bus"))]
@@ -13,13 +15,10 @@ mod network;
 
 use std::path::PathBuf;
 
-use sandgate::component::{
-    Causality, Component, HostSettings, Mode, Start, StepReport, ValueKind, Wish, saved_checksum,
-};
-use sandgate::fmi::{self, FmiVersion};
-use sandgate::record::{RecordError, RecordOptions, Recorder};
+use sandgate::component::{Component, Mode, StepReport, Wish, saved_checksum};
+use sandgate::fmi::FmiVersion;
+use sandgate::record::{RecordError, Recorder};
 pub(crate) use sandgate::wire::Moment;
-use sandgate::wire::messages::AppliedEvent;
 use sandgate::wire::{Observer, Unobserved, keys};
 
 use crate::fault::Fault;
@@ -85,122 +84,11 @@ impl Journal {
         }
     }
 
-    /// Initialisation is about to end: begins the log and opens the network, if there shall be any. Gives whether it did.
-    pub(crate) fn open(&mut self, component: &Component) -> Result<bool, Fault> {
-        let HostSettings {
-            log_path,
-            zenoh_config,
-            ..
-        } = component.host_settings();
-        let (logs, publishes) = (!log_path.is_empty(), !zenoh_config.is_empty());
-        if !logs && !publishes {
-            return Ok(false);
-        }
-        if publishes {
-            self.connect(component)?;
-        }
-        if logs {
-            match self.create(component, "start") {
-                Ok(log) => self.log = Some(log),
-                Err(fault) => {
-                    self.discard();
-                    return Err(fault);
-                }
-            }
-        }
-        self.tell_start(component)?;
-        Ok(true)
-    }
-
-    /// What was set before anybody listened.
-    fn tell_start(&mut self, component: &Component) -> Result<(), Fault> {
-        let settable = component.variables().rows().iter().filter(|row| {
-            matches!(row.causality, Causality::Parameter | Causality::Input)
-                && row.kind != ValueKind::Text
-                && !component.variables().is_for_host(row)
-        });
-        for row in settable {
-            let mut now = vec![0.0; row.len()];
-            component.get(&[row.reference], &mut now)?;
-            if row.start != Start::Exact(now.clone()) {
-                self.each(|one, source| one.on_input(component, &[row.reference], &now, source));
-            }
-        }
-        for (reference, slope) in component.input_slopes() {
-            self.each(|one, source| one.on_slopes(component, &[reference], &[slope], source));
-        }
-        Ok(())
-    }
-
-    fn connect(&mut self, component: &Component) -> Result<(), Fault> {
-        let name = match self.instance.as_str() {
-            "" => component.scene().name.as_str(),
-            own => own,
-        };
-        let text = &component.host_settings().zenoh_config;
-        let network = Network::open(component, text, name)
-            .map_err(|why| Fault::Outside(format!("zenoh.config: {why}")))?;
-        self.event = Some(network.announcement());
-        self.network = Some(network);
-        Ok(())
-    }
-
-    fn create(&mut self, component: &Component, reason: &str) -> Result<Recorder, Fault> {
-        let settings = component.host_settings();
-        // Importers change the directory as they like; the file stays where it is meant now.
-        let path = std::path::absolute(&settings.log_path)
-            .map_err(|why| Fault::Outside(format!("log.path {:?}: {why}", settings.log_path)))?;
-        let mut options = RecordOptions {
-            required: settings.log_required,
-            reason: reason.to_owned(),
-            ..RecordOptions::of(component)
-        };
-        if !self.instance.is_empty() {
-            options.instance.clone_from(&self.instance);
-        }
-        if let Some(version) = self.version {
-            let text = fmi::description(component, version).into_bytes();
-            let name = "modelDescription.xml".to_owned();
-            options.attachments = vec![(name, "application/xml".to_owned(), text)];
-        }
-        let jumps = match &self.before {
-            Some((before, jumps)) if *before == path => *jumps,
-            _ => 0,
-        };
-        let log = Recorder::create_after(&path, jumps, component, options).map_err(told)?;
-        self.before = Some((path, log.next_epoch()));
-        (self.complained, self.complaint) = (false, None);
-        Ok(log)
-    }
-
     /// The component was initialised.
     pub(crate) fn initialized(&mut self, component: &Component) -> Result<(), Fault> {
         let (start, stop) = (component.time(), component.stop_time());
         self.each(|one, source| one.on_initialize(component, start, stop, source));
         self.watch()
-    }
-
-    /// Initialisation was refused after all.
-    pub(crate) fn discard(&mut self) {
-        if let Some(log) = self.log.take() {
-            if let Err(error) = log.discard() {
-                self.complaint = Some(error.to_string());
-            }
-            // The name is free again.
-            if let Some((_, jumps)) = &mut self.before {
-                *jumps = jumps.saturating_sub(1);
-            }
-        }
-        self.disconnect();
-    }
-
-    fn disconnect(&mut self) {
-        self.owned.clear();
-        if let Some(network) = self.network.take()
-            && let Err(why) = network.close()
-        {
-            self.complaint = Some(why);
-        }
     }
 
     /// Variables were set.
@@ -291,57 +179,6 @@ impl Journal {
             self.complaint = Some(fault.to_string());
         }
         self.watch()
-    }
-
-    /// An instance that was not initialised here but went to a state: what its parameters ask for begins now.
-    fn begin_late(&mut self, component: &Component) -> Result<(), Fault> {
-        let settings = component.host_settings();
-        if self.network.is_none() && !settings.zenoh_config.is_empty() {
-            self.connect(component)?;
-            if let Some(network) = &mut self.network {
-                network
-                    .observer()
-                    .on_jump(component, AppliedEvent::Restore, self.interface);
-            }
-        }
-        if self.log.is_none() && !settings.log_path.is_empty() {
-            self.log = Some(self.create(component, "restored")?);
-        }
-        Ok(())
-    }
-
-    /// The component was reset, or is no longer what it was: nothing more is told.
-    pub(crate) fn end(&mut self, reason: &str) {
-        if let Some(log) = self.take()
-            && let Err(error) = log.end(reason)
-        {
-            self.complaint = Some(error.to_string());
-        }
-        self.disconnect();
-    }
-
-    /// The log, and remembers how often its component has jumped.
-    fn take(&mut self) -> Option<Recorder> {
-        let log = self.log.take()?;
-        if let Some((_, jumps)) = &mut self.before {
-            *jumps = log.next_epoch();
-        }
-        Some(log)
-    }
-
-    /// The component has come to its end: so do log and publications.
-    pub(crate) fn finish(&mut self, component: &Component, reason: &str) -> Result<(), Fault> {
-        self.disconnect();
-        let Some(log) = self.take() else {
-            return Ok(());
-        };
-        let finished = log.finish(component, reason).map_err(told)?;
-        if let Some(failure) = finished.failure
-            && !self.complained
-        {
-            self.complaint = Some(failure.to_string());
-        }
-        Ok(())
     }
 
     /// A failure of a log that is not required, once.

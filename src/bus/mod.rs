@@ -26,6 +26,7 @@ mod serve;
 mod set_point;
 mod status;
 mod stepping;
+mod tasks;
 mod values;
 mod verb;
 mod watch;

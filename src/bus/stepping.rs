@@ -3,65 +3,25 @@
 //!
 //! Does not know Zenoh: who asked is behind [`Asked`].
 
+mod pace;
+
 use super::protocol::Protocol;
-use super::reply::Reply;
 use super::request::Request;
 use super::set_point::SetPoint;
 use super::status::{Busy, Shared};
+use super::tasks::{Asked, Exchange, Note, Task, WAITING_TASKS, command};
 use super::watch::{Lost, Watch, WhenLost};
 use crate::component::Component;
 use crate::wire::Observer;
-use crate::wire::convert::timestamp;
 use crate::wire::foxglove::LogLevel;
-use crate::wire::messages::{Command, CommandKind};
+use crate::wire::messages::CommandKind;
+use pace::Pace;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-/// Tasks that may wait for the stepping thread.
-pub(super) const WAITING_TASKS: usize = 256;
-/// How many of these may be set-points, so that a flood of them leaves room for requests.
-pub(super) const WAITING_SET_POINTS: usize = 192;
-/// Calls answered elsewhere that may wait to be written to the log.
-pub(super) const WAITING_NOTES: usize = 1024;
 /// How often the stepping thread looks whether it shall stop when nobody asks anything.
 const LOOK_UP: Duration = Duration::from_millis(50);
-
-/// Somebody who waits for a reply. Dropping it answers, too, with an error.
-pub(super) trait Asked: Send {
-    /// Hands the reply on to the thread that sends it.
-    fn answer(self: Box<Self>, reply: Reply);
-}
-
-/// Something for the component.
-pub(super) enum Task {
-    /// A request, with its body as it came.
-    Call {
-        request: Box<Request>,
-        body: String,
-        asked: Box<dyn Asked>,
-    },
-    /// A set-point.
-    SetPoint(SetPoint),
-}
-
-/// Something that was dealt with elsewhere and belongs in the log.
-pub(super) enum Note {
-    /// A call answered without the component.
-    Call(Exchange),
-    /// A set-point refused.
-    Refused(String),
-}
-
-/// A call and its reply as text.
-pub(super) struct Exchange {
-    pub(super) verb: String,
-    pub(super) req: String,
-    pub(super) client: String,
-    pub(super) body: String,
-    pub(super) status: &'static str,
-    pub(super) reply: String,
-}
 
 /// The component and its queues.
 pub(super) struct Stepper<'a> {
@@ -137,62 +97,74 @@ impl Stepper<'_> {
     fn carry_out(&mut self, task: Task, observer: &mut dyn Observer) -> bool {
         match task {
             Task::SetPoint(point) => {
-                self.shared.waiting_set_points.fetch_sub(1, Relaxed);
-                let done = self
-                    .protocol
-                    .set_point(&mut self.component, &point, observer);
-                if let Err(refusal) = done {
-                    self.shared.refused_set_points.fetch_add(1, Relaxed);
-                    self.warn(&format!("set-point refused: {refusal}"), observer);
-                }
-                self.publish_status();
+                self.set_point(&point, observer);
                 false
             }
             Task::Call {
                 request,
                 body,
                 asked,
-            } => {
-                self.shared.set_busy(Some(Busy {
-                    verb: request.verb.name(),
-                    client: request.client.clone(),
-                    req: request.req.clone(),
-                }));
-                let mut exchange = Exchange {
-                    verb: request.verb.name().to_owned(),
-                    req: request.req.clone(),
-                    client: request.client.clone(),
-                    body,
-                    status: "",
-                    reply: String::new(),
-                };
-                observer.on_command(&command(
-                    self.component.time(),
-                    &mut exchange,
-                    CommandKind::Request,
-                ));
-                let reply = self
-                    .protocol
-                    .handle(&mut self.component, &request, observer);
-                exchange.status = reply.status();
-                exchange.reply.clone_from(&reply.body);
-                let ends = reply.ends;
-                if request.verb.drives() && reply.error.is_none() {
-                    self.watch.hear();
-                    self.shared.orchestrator_lost.store(false, Relaxed);
-                }
-                // The status is there before the reply, so that who has the reply reads a status that knows of it.
-                self.publish_status();
-                self.shared.set_busy(None);
-                asked.answer(reply);
-                observer.on_reply(&command(
-                    self.component.time(),
-                    &mut exchange,
-                    CommandKind::Reply,
-                ));
-                ends
-            }
+            } => self.answer(&request, body, asked, observer),
         }
+    }
+
+    /// Takes a set-point, or says why not.
+    fn set_point(&mut self, point: &SetPoint, observer: &mut dyn Observer) {
+        self.shared.waiting_set_points.fetch_sub(1, Relaxed);
+        let done = self
+            .protocol
+            .set_point(&mut self.component, point, observer);
+        if let Err(refusal) = done {
+            self.shared.refused_set_points.fetch_add(1, Relaxed);
+            self.warn(&format!("set-point refused: {refusal}"), observer);
+        }
+        self.publish_status();
+    }
+
+    /// Carries out a request and answers who asked. Whether the server ends after it.
+    fn answer(
+        &mut self,
+        request: &Request,
+        body: String,
+        asked: Box<dyn Asked>,
+        observer: &mut dyn Observer,
+    ) -> bool {
+        self.shared.set_busy(Some(Busy {
+            verb: request.verb.name(),
+            client: request.client.clone(),
+            req: request.req.clone(),
+        }));
+        let mut exchange = Exchange {
+            verb: request.verb.name().to_owned(),
+            req: request.req.clone(),
+            client: request.client.clone(),
+            body,
+            status: "",
+            reply: String::new(),
+        };
+        observer.on_command(&command(
+            self.component.time(),
+            &mut exchange,
+            CommandKind::Request,
+        ));
+        let reply = self.protocol.handle(&mut self.component, request, observer);
+        exchange.status = reply.status();
+        exchange.reply.clone_from(&reply.body);
+        let ends = reply.ends;
+        if request.verb.drives() && reply.error.is_none() {
+            self.watch.hear();
+            self.shared.orchestrator_lost.store(false, Relaxed);
+        }
+        // The status is there before the reply, so that who has the reply reads a status that knows of it.
+        self.publish_status();
+        self.shared.set_busy(None);
+        asked.answer(reply);
+        observer.on_reply(&command(
+            self.component.time(),
+            &mut exchange,
+            CommandKind::Reply,
+        ));
+        ends
     }
 
     /// Whether the server ends because the orchestrator has been silent for too long.
@@ -276,57 +248,6 @@ impl Stepper<'_> {
 
     fn publish_status(&self) {
         self.shared.update(self.protocol.status(&self.component));
-    }
-}
-
-/// One half of a call for the log, at a simulated time [s]; takes its text.
-pub(super) fn command(time: f64, exchange: &mut Exchange, kind: CommandKind) -> Command {
-    let request = kind == CommandKind::Request;
-    let body = if request {
-        &mut exchange.body
-    } else {
-        &mut exchange.reply
-    };
-    Command {
-        timestamp: Some(timestamp(time)),
-        time,
-        kind: kind as i32,
-        interface: "rpc".into(),
-        verb: exchange.verb.clone(),
-        request: exchange.req.clone(),
-        client: exchange.client.clone(),
-        body: std::mem::take(body),
-        status: if request {
-            String::new()
-        } else {
-            exchange.status.into()
-        },
-    }
-}
-
-/// Keeps simulated time at a multiple of wall time.
-struct Pace {
-    began: Instant,
-    from: f64,
-    factor: f64,
-    epoch: u64,
-}
-
-impl Pace {
-    fn new(from: f64, factor: f64, epoch: u64) -> Self {
-        Self {
-            began: Instant::now(),
-            from,
-            factor,
-            epoch,
-        }
-    }
-
-    /// How long until the step that begins at `time` [s] may begin. A run that is behind does not wait.
-    fn wait(&self, time: f64) -> Duration {
-        let due = Duration::try_from_secs_f64(((time - self.from) / self.factor).max(0.0))
-            .unwrap_or(Duration::MAX);
-        due.saturating_sub(self.began.elapsed())
     }
 }
 

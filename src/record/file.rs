@@ -2,27 +2,24 @@
 //!
 //! It knows messages as bytes only; what they say is the business of `write`.
 //!
-//! Loss: with [`Pace::WallClock`] a thread brings everything to the system within [`FLUSH_AFTER`] plus [`LOOK_EVERY`],
+//! Loss: with [`Pace::WallClock`] a thread brings everything to the system within `FLUSH_AFTER` plus `LOOK_EVERY` of `state`,
 //! also while a step takes minutes; with [`Pace::Caller`] whatever came before the last [`LogFile::flush`] is safe and
 //! the bytes do not depend on any clock.
 
+mod state;
+
 use super::error::Failure;
 use super::raw::RawChannel;
-use super::sink::{Latch, Passed, Sink, Syncer};
+use super::sink::{Latch, Sink};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
+use state::{Shared, State, spawn_flusher};
 use std::collections::BTreeMap;
 use std::io::BufWriter;
 use std::path::PathBuf;
-use std::sync::atomic::Ordering::Relaxed;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, MutexGuard};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
 
-/// Age of the oldest message in memory at which it is written.
-const FLUSH_AFTER: Duration = Duration::from_millis(500);
-/// How often the thread looks.
-const LOOK_EVERY: Duration = Duration::from_millis(250);
 /// Bytes of a chunk at which it is closed without waiting for a flush; also the memory a log takes.
 const CHUNK_BYTES: u64 = 1 << 20;
 
@@ -65,28 +62,6 @@ pub(super) struct LogFile {
     path: Option<PathBuf>,
 }
 
-struct Shared {
-    state: Mutex<State>,
-    stop: Condvar,
-}
-
-struct State {
-    mcap: Option<Mcap>,
-    failure: Option<Failure>,
-    written: u64,
-    /// Bytes of all messages so far.
-    bytes: u64,
-    dropped: u64,
-    /// Messages of the open chunk, which is in memory.
-    unflushed: u64,
-    /// Bytes that the system has taken.
-    passed: Passed,
-    sync: Option<Syncer>,
-    dirty_since: Option<Instant>,
-    time: f64,
-    stopped: bool,
-}
-
 /// What became of the messages of a file. Of the chunk at which a write failed a part may be there, and can be read: all of it
 /// counts as dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,27 +98,8 @@ impl LogFile {
             .profile("")
             .library(concat!("sandgate ", env!("CARGO_PKG_VERSION")))
             .create(NoSeek::new(buffered));
-        let mut state = State {
-            mcap: None,
-            failure: None,
-            written: 0,
-            bytes: 0,
-            dropped: 0,
-            unflushed: 0,
-            passed,
-            sync,
-            dirty_since: None,
-            time: 0.0,
-            stopped: false,
-        };
-        match created {
-            Ok(mcap) => state.mcap = Some(mcap),
-            Err(error) => state.fail(&error, path.as_ref()),
-        }
-        let shared = Arc::new(Shared {
-            state: Mutex::new(state),
-            stop: Condvar::new(),
-        });
+        let state = State::new(created, passed, sync, path.as_ref());
+        let shared = Arc::new(Shared::new(state));
         let flusher = (pace == Pace::WallClock)
             .then(|| spawn_flusher(Arc::clone(&shared), path.clone()))
             .flatten();
@@ -216,25 +172,8 @@ impl LogFile {
             log_time,
             publish_time,
         };
-        let mut state = self.lock();
-        state.time = time;
-        if state.mcap.is_none() {
-            state.dropped += 1;
-            return;
-        }
-        state.written += 1;
-        state.bytes += data.len() as u64;
-        state.unflushed += 1;
-        state.dirty_since.get_or_insert_with(Instant::now);
-        let before = state.passed.load(Relaxed);
-        let written = state.with(self.path.as_ref(), |mcap| {
-            mcap.write_to_known_channel(&header, data)
-        });
-        // Only the end of a chunk, which is larger than the buffer, brings bytes to the system here; this message is the
-        // first of the next one.
-        if written.is_some() && state.passed.load(Relaxed) != before {
-            state.unflushed = 1;
-        }
+        let path = self.path.as_ref();
+        self.lock().message(path, time, &header, data);
     }
 
     /// Closes the chunk and hands all bytes to the system.
@@ -245,30 +184,14 @@ impl LogFile {
     /// Writes the summary, brings everything to the disk and closes the file.
     pub(super) fn finish(&mut self) -> (Counts, Option<Failure>) {
         self.stop_flusher();
-        let path = self.path.clone();
         let mut state = self.lock();
-        state.flush(path.as_ref());
-        state.with(path.as_ref(), |mcap| mcap.finish().map(drop));
-        if let Some(mcap) = state.mcap.take() {
-            let buffered = mcap.into_inner().into_inner();
-            let closed = buffered
-                .into_inner()
-                .map_err(std::io::IntoInnerError::into_error)
-                .and_then(|mut latch| latch.sync());
-            if let Err(error) = closed {
-                state.fail(&error.into(), path.as_ref());
-            }
-        }
-        let counts = Counts {
-            written: state.written,
-            dropped: state.dropped,
-        };
-        (counts, state.failure.clone())
+        state.close(self.path.as_ref());
+        (state.counts(), state.failure())
     }
 
     /// Bytes of all messages so far, without what MCAP adds.
     pub(super) fn bytes(&self) -> u64 {
-        self.lock().bytes
+        self.lock().bytes()
     }
 
     /// Writes nothing more, as if a write had failed for this reason.
@@ -280,16 +203,12 @@ impl LogFile {
 
     /// The first failure, if there was one.
     pub(super) fn failure(&self) -> Option<Failure> {
-        self.lock().failure.clone()
+        self.lock().failure()
     }
 
     /// What became of the messages so far.
     pub(super) fn counts(&self) -> Counts {
-        let state = self.lock();
-        Counts {
-            written: state.written,
-            dropped: state.dropped,
-        }
+        self.lock().counts()
     }
 
     fn with<T>(&mut self, write: impl FnOnce(&mut Mcap) -> mcap::McapResult<T>) -> Option<T> {
@@ -298,13 +217,12 @@ impl LogFile {
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
-        lock(&self.shared)
+        self.shared.lock()
     }
 
     fn stop_flusher(&mut self) {
         if let Some(flusher) = self.flusher.take() {
-            self.lock().stopped = true;
-            self.shared.stop.notify_all();
+            self.shared.stop();
             // The thread does not panic; if it did, its failure is latched in the state already.
             let _ = flusher.join();
         }
@@ -316,84 +234,4 @@ impl Drop for LogFile {
     fn drop(&mut self) {
         self.stop_flusher();
     }
-}
-
-impl State {
-    fn with<T>(
-        &mut self,
-        path: Option<&PathBuf>,
-        write: impl FnOnce(&mut Mcap) -> mcap::McapResult<T>,
-    ) -> Option<T> {
-        match write(self.mcap.as_mut()?) {
-            Ok(value) => Some(value),
-            Err(error) => {
-                self.fail(&error, path);
-                None
-            }
-        }
-    }
-
-    fn flush(&mut self, path: Option<&PathBuf>) {
-        if self.with(path, mcap::Writer::flush).is_none() {
-            return;
-        }
-        if let Some(sync) = &mut self.sync
-            && let Err(error) = sync()
-        {
-            self.fail(&error.into(), path);
-            return;
-        }
-        self.unflushed = 0;
-        self.dirty_since = None;
-    }
-
-    /// Latches the first failure. Messages that were only in memory count as dropped.
-    fn fail(&mut self, error: &mcap::McapError, path: Option<&PathBuf>) {
-        if let Some(mcap) = self.mcap.take() {
-            // Taken apart rather than dropped: dropping would try to write a summary.
-            drop(mcap.into_inner());
-        }
-        self.dropped += self.unflushed;
-        self.written -= self.unflushed;
-        self.unflushed = 0;
-        self.dirty_since = None;
-        let cause = match error {
-            mcap::McapError::Io(io) => io.to_string(),
-            other => other.to_string(),
-        };
-        self.failure.get_or_insert(Failure {
-            time: self.time,
-            cause,
-            file: path.cloned(),
-        });
-    }
-}
-
-fn lock(shared: &Shared) -> MutexGuard<'_, State> {
-    // State is consistent between statements, so a panic elsewhere does not spoil it.
-    shared.state.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// None if the system has no thread to give: the log is then written by chunks only, which is still a log.
-fn spawn_flusher(shared: Arc<Shared>, path: Option<PathBuf>) -> Option<JoinHandle<()>> {
-    let flush_until_stopped = move || {
-        let mut state = lock(&shared);
-        while !state.stopped {
-            state = shared
-                .stop
-                .wait_timeout(state, LOOK_EVERY)
-                .unwrap_or_else(PoisonError::into_inner)
-                .0;
-            if state
-                .dirty_since
-                .is_some_and(|since| since.elapsed() >= FLUSH_AFTER)
-            {
-                state.flush(path.as_ref());
-            }
-        }
-    };
-    std::thread::Builder::new()
-        .name("sandgate-log".to_owned())
-        .spawn(flush_until_stopped)
-        .ok()
 }

@@ -52,7 +52,7 @@ impl Page {
     }
 
     fn introduction(&mut self) {
-        self.line("<!-- Made by `sandgate::scene::reference_markdown` from src/scene/raw/sections.rs; do not edit. -->");
+        self.line("<!-- Made by `sandgate::scene::reference_markdown` from src/scene/raw/; do not edit. -->");
         self.line("# Scene files");
         self.line("");
         self.line(

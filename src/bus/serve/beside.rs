@@ -8,6 +8,7 @@ use super::desk::{Aside, Desk, Entrances};
 use super::press::Press;
 use super::replies::send_replies;
 use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn, wanted};
+use crate::bus::Protocol;
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
 use crate::bus::publish::{LastValues, Publisher, WAITING_BATCHES};
@@ -15,9 +16,8 @@ use crate::bus::reach::Reach;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::set_point::SetPoint;
 use crate::bus::status::{Shared, Status, lock};
-use crate::bus::stepping::{Note, Task, WAITING_NOTES, WAITING_TASKS};
+use crate::bus::tasks::{Note, Task, WAITING_NOTES, WAITING_TASKS, command};
 use crate::bus::values::{self, Assignment};
-use crate::bus::{Protocol, stepping};
 use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::foxglove::LogLevel;
 use crate::wire::messages::{AppliedEvent, Command, CommandKind};
@@ -219,9 +219,9 @@ impl Beside {
                 }
                 Note::Call(mut exchange) => {
                     let time = component.time();
-                    let request = stepping::command(time, &mut exchange, CommandKind::Request);
+                    let request = command(time, &mut exchange, CommandKind::Request);
                     other.on_command(&request);
-                    let reply = stepping::command(time, &mut exchange, CommandKind::Reply);
+                    let reply = command(time, &mut exchange, CommandKind::Reply);
                     other.on_reply(&reply);
                 }
             }

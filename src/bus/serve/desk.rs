@@ -10,7 +10,7 @@ use crate::bus::reply::Reply;
 use crate::bus::request::{LONGEST_TOLD, Request};
 use crate::bus::set_point::SetPoint;
 use crate::bus::status::{Shared, Status, lock};
-use crate::bus::stepping::{Exchange, Note, Task, WAITING_SET_POINTS, WAITING_TASKS};
+use crate::bus::tasks::{Exchange, Note, Task, WAITING_SET_POINTS, WAITING_TASKS};
 use crate::bus::verb::Verb;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{SyncSender, TrySendError};

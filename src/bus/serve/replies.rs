@@ -4,7 +4,7 @@ use crate::bus::publish::{LastValues, Publication};
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::reply::Reply;
 use crate::bus::status::{Shared, lock};
-use crate::bus::stepping::Asked;
+use crate::bus::tasks::Asked;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError};
 use zenoh::Wait as _;

@@ -1,4 +1,4 @@
-//! Materials. To add a law: a table in `raw/sections.rs`, a line in its `RawMaterial`, a function here or in `friction`.
+//! Materials. To add a law: a table in `raw/materials.rs`, a line in its `RawMaterial`, a function here or in `friction`.
 
 use super::Lift;
 use super::friction::{FrictionKeys, friction_keys};

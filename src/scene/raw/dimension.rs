@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use toml::de::DeValue;
 
-use super::read::{Field, Node, Problems, describe};
+use super::problems::Problems;
+use super::read::{Field, Node, describe};
 use super::values::schemas;
 
 /// What the coordinates of a scene stand for, as typed.

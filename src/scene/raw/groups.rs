@@ -5,7 +5,8 @@ use std::marker::PhantomData;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
-use super::read::{At, Field, Node, Place, Problems, describe};
+use super::problems::{Place, Problems};
+use super::read::{At, Field, Node, describe};
 use super::values::{Acceleration, Loose, Scalar, Time, check_name, quantity_schema, schemas};
 use crate::units::Quantity;
 

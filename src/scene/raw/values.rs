@@ -5,7 +5,9 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use toml::de::DeValue;
 
-use super::read::{Field, Node, Place, Problems, describe, nearest};
+use super::problems::{Place, Problems};
+use super::read::{Field, Node, describe};
+use super::unknown::nearest;
 use crate::units::{self, Quantity, quote};
 
 /// Schemas of values that are written in place.

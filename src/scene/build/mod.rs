@@ -1,0 +1,106 @@
+//! Scene to what the solver runs: particles, wall points, devices. The last module that knows scenes.
+
+mod inflows;
+mod overlap;
+mod particles;
+mod plates;
+mod walls;
+
+use crate::math::{Geometry, Vector};
+use crate::solver::{Periodic, Plan, Scheme, Sink};
+use crate::state::State;
+
+use super::elements::elements;
+use super::ghosts::ghost_depth;
+use super::{Dimension, Point, Scene};
+use inflows::source;
+use overlap::check_overlap;
+use particles::state;
+use plates::plates;
+use walls::{movers, walls};
+
+pub(super) use walls::group;
+
+/// The first D components of a point.
+#[must_use]
+pub fn narrow<const D: usize>(point: &Point) -> Vector<D> {
+    std::array::from_fn(|k| point[k])
+}
+
+/// Solver plan and start state of a scene whose dimension is D.
+///
+/// # Errors
+/// A sentence: no particles and no inflow, a particle inside a wall, a periodic side too short for the kernel.
+pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), String> {
+    let periodic = periodic::<D>(scene)?;
+    let walls = match scene.numerics.scheme {
+        Scheme::PaperB(_) => elements::<D>(scene),
+        Scheme::Implicit | Scheme::PaperA(_) => walls::<D>(scene, &periodic),
+    };
+    let movers = movers(scene, &walls);
+    let sources = scene.inflows.iter().map(|i| source(scene, i)).collect();
+    let sinks = scene
+        .outflows
+        .iter()
+        .map(|o| Sink {
+            lower: narrow(&o.lower),
+            upper: narrow(&o.upper),
+        })
+        .collect();
+    let ghost_depth = match scene.numerics.scheme {
+        Scheme::PaperA(_) => ghost_depth(scene, &walls),
+        Scheme::Implicit | Scheme::PaperB(_) => Vec::new(),
+    };
+    let state = state::<D>(scene)?;
+    let plates = plates(scene, &walls, &state.grains.position);
+    let plan = Plan {
+        numerics: scene.numerics.clone(),
+        gravity: narrow(&scene.domain.gravity),
+        geometry: geometry(scene),
+        lower: narrow(&scene.domain.lower),
+        upper: narrow(&scene.domain.upper),
+        periodic,
+        materials: scene.materials.iter().map(|m| m.material.clone()).collect(),
+        walls,
+        ghost_depth,
+        movers,
+        plates,
+        sources,
+        sinks,
+    };
+    check_overlap(scene, &plan, &state)?;
+    Ok((plan, state))
+}
+
+/// What a scene's coordinates stand for.
+#[must_use]
+pub fn geometry(scene: &Scene) -> Geometry {
+    match scene.dimension {
+        Dimension::Two => Geometry::Planar {
+            width: scene.domain.width,
+        },
+        Dimension::Axisymmetric => Geometry::Axisymmetric,
+        Dimension::Three => Geometry::Space,
+    }
+}
+
+fn periodic<const D: usize>(scene: &Scene) -> Result<Periodic<D>, String> {
+    let domain = &scene.domain;
+    // Support 2 h and the lists' skin of 0.3 h, on both sides of a particle.
+    let least = 2.0 * (2.0 + 0.3) * scene.numerics.spacing * scene.numerics.smoothing_ratio;
+    let mut length = [0.0; D];
+    for (k, length) in length.iter_mut().enumerate() {
+        if domain.periodic[k] {
+            *length = domain.upper[k] - domain.lower[k];
+            if *length < least {
+                return Err(format!(
+                    "the periodic side along axis {k} is {length} m long; allowed at least {least} m (4.6 h): lengthen the domain or refine the spacing"
+                ));
+            }
+        }
+    }
+    Ok(Periodic {
+        lower: narrow(&domain.lower),
+        length,
+    })
+}

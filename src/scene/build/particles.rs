@@ -1,0 +1,157 @@
+//! The start state: particles of the bodies, on their lattices, with the masses, densities and speeds they start with.
+
+use crate::math::{Vector, add};
+use crate::shape::{Lattice, lattice};
+use crate::solver::{Scheme, three};
+use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
+
+use super::{geometry, narrow};
+use crate::scene::load::Loads;
+use crate::scene::steady_flow::steady_flow;
+use crate::scene::{Dimension, Point, Scene};
+
+/// Mass of a particle of `density` at a place that stands for `cell` m^D of the section [kg]. Rings far from the axis
+/// are heavier than those near it: the heaviest that the domain has room for sets what masses are multiples of.
+pub(super) fn particle_mass(scene: &Scene, place: &Point, density: f64, cell: f64) -> f64 {
+    let geometry = geometry(scene);
+    let length = |x: &Point| geometry.length_across(x, 0.0);
+    let mass = density * cell * length(place);
+    let largest = if geometry.is_axisymmetric() {
+        density * cell * length(&scene.domain.upper)
+    } else {
+        mass
+    };
+    exact_mass(mass, largest)
+}
+
+/// Mass of a particle, rounded to a multiple of a power of two so that sums of up to 2^28 particles no heavier than
+/// `largest` are exact [kg].
+fn exact_mass(mass: f64, largest: f64) -> f64 {
+    let quantum = 2f64.powi(largest.log2().floor() as i32 - 24);
+    (mass / quantum).round() * quantum
+}
+
+/// Particles, and devices as they start.
+///
+/// # Errors
+/// A sentence: no particles and no inflow.
+pub(super) fn state<const D: usize>(scene: &Scene) -> Result<State<D>, String> {
+    let mut random = Random::new(scene.numerics.seed);
+    let grains = grains(scene, &mut random);
+    if grains.is_empty() && scene.inflows.is_empty() {
+        return Err("the scene has no particles and no inflow: add a body that holds at least one particle spacing".to_owned());
+    }
+    let gates = scene
+        .gates
+        .iter()
+        .map(|g| GateState {
+            opening: g.start,
+            rate: 0.0,
+            blocked: false,
+            listed_opening: g.start,
+        })
+        .collect();
+    Ok(State {
+        time: 0.0,
+        initial_mass: grains.present_mass(),
+        next_id: grains.len() as u64,
+        grains,
+        pose: PoseTimes::default(),
+        gates,
+        inflows: vec![InflowState::default(); scene.inflows.len()],
+        drained: vec![0.0; scene.outflows.len()],
+        impulse: vec![[0.0; D]; scene.walls.len() + scene.gates.len()],
+        steps: 0,
+        iterations: 0,
+        step_size: 0.0,
+        trend: 0.0,
+        rest: RestState::default(),
+        random,
+    })
+}
+
+/// Particles of all bodies, in their order; their numbers are their places.
+fn grains<const D: usize>(scene: &Scene, random: &mut Random) -> Grains<D> {
+    let mut grains = Grains {
+        implicit: scene.numerics.scheme == Scheme::Implicit,
+        exact_yield: scene.keeps_stress(),
+        wall_friction: scene.has_wall_friction(),
+        saturated: scene.has_pore_pressure(),
+        ..Grains::default()
+    };
+    let rings = scene.dimension == Dimension::Axisymmetric;
+    let lattices = lattices::<D>(scene);
+    let loads = Loads::new::<D>(scene, up_axis(scene), &lattices);
+    for (number, (body, lattice)) in scene.bodies.iter().zip(&lattices).enumerate() {
+        let material = &scene.materials[body.material].material;
+        let sound_speed = material.sound_speed.unwrap_or(scene.numerics.sound_speed);
+        let flow = steady_flow(scene, body);
+        let bulk = flow
+            .as_ref()
+            .map_or(material.rest_density(), |f| f.loose_density);
+        // Rings are not packed (`solver/pack.rs`), and nothing damps what uneven ones of a fluid do to its pressure.
+        let still = rings && material.is_fluid();
+        for place in &lattice.points {
+            let position: Vector<D> = std::array::from_fn(|k| {
+                let aside = reach(scene, k, place) * random.symmetric();
+                if still { place[k] } else { place[k] + aside }
+            });
+            let mut velocity: Vector<D> = narrow(&body.velocity);
+            let mut density =
+                material.density_under(loads.above(number, &three(&position)), sound_speed);
+            let mut shear_rate = 0.0;
+            if let Some(flow) = &flow {
+                let here = flow.at(&three(&position), scene.numerics.sound_speed);
+                velocity = add(&velocity, &narrow(&here.velocity));
+                (density, shear_rate) = (here.density, here.shear_rate);
+            }
+            let mass = particle_mass(scene, place, bulk, lattice.cell_volume);
+            let id = grains.len() as u64;
+            grains.push(id, body.material as u8, position, velocity, mass, density);
+            if let Some(relaxed) = grains.relaxed_shear.last_mut() {
+                *relaxed = shear_rate;
+            }
+        }
+    }
+    grains
+}
+
+/// What the bodies are filled on.
+fn lattices<const D: usize>(scene: &Scene) -> Vec<Lattice> {
+    let rings = scene.dimension == Dimension::Axisymmetric;
+    // With the packing of the start (`solver/pack.rs`), which evens what it leaves uneven beside walls.
+    let staggered =
+        scene.numerics.jitter > 0.0 && !rings && scene.numerics.scheme == Scheme::Implicit;
+    let bodies = scene.bodies.iter();
+    bodies
+        .map(|body| {
+            let level = body.level.map(|height| (scene.up(), height));
+            lattice(&body.shape, level, scene.numerics.spacing, D, staggered)
+        })
+        .collect()
+}
+
+/// How far a particle may start from its place along an axis [m]. Rings of half a spacing move half as far: the mass is
+/// that of the place, and the section's area follows from it.
+fn reach(scene: &Scene, axis: usize, place: &Point) -> f64 {
+    let dp = scene.numerics.spacing;
+    let rings = scene.dimension == Dimension::Axisymmetric;
+    let room = if rings && axis == 0 {
+        dp.min(place[0])
+    } else {
+        dp
+    };
+    scene.numerics.jitter * room
+}
+
+/// Axis of "up".
+fn up_axis(scene: &Scene) -> usize {
+    let up = scene.up();
+    (0..3).fold(0, |best, k| {
+        if up[k].abs() > up[best].abs() {
+            k
+        } else {
+            best
+        }
+    })
+}

@@ -1,0 +1,176 @@
+//! Walls as points, the groups these belong to, and how walls move.
+
+use crate::boundary::{
+    End, GroupSpec, Mover, ROWS, RigidMotion, WallPoints, box_points, free_ends, joined_points,
+    plane_points,
+};
+use crate::math::{norm, scale};
+use crate::solver::Periodic;
+
+use super::narrow;
+use crate::scene::{Dimension, ForceTarget, GaugeKind, Point, Scene, Slip, Wall, WallGeometry};
+
+/// Points of all walls, and groups of walls and gates in this order.
+pub(super) fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D> {
+    let dp = scene.numerics.spacing;
+    let mut points = WallPoints::default();
+    for (n, wall) in scene.walls.iter().enumerate() {
+        points
+            .groups
+            .push(group(scene, wall.slip, wall.rigid, ForceTarget::Wall(n)));
+        match &wall.geometry {
+            WallGeometry::Polyline {
+                points: corners,
+                closed,
+            } => add_polyline(&mut points, scene, n, corners, *closed),
+            WallGeometry::Box { lower, upper } => {
+                let velocity = narrow(&wall.velocity);
+                for (x, normal) in box_points::<D>(&narrow(lower), &narrow(upper), dp) {
+                    points.push(x, velocity, normal, 1.0, n as u16);
+                }
+            }
+            WallGeometry::Plane { point, normal } => {
+                add_plane(&mut points, scene, periodic, n, (point, normal));
+            }
+        }
+    }
+    if scene.dimension == Dimension::Axisymmetric {
+        points.retain(|x| x[0] > 0.0);
+    }
+    let wall = |group: u16| &scene.walls[group as usize];
+    points.drop_doubles(dp, |a, b| wall(a).moves_with(wall(b)));
+    for (n, gate) in scene.gates.iter().enumerate() {
+        points
+            .groups
+            .push(group(scene, gate.slip, false, ForceTarget::Gate(n)));
+    }
+    points
+}
+
+/// Points of a chain of straight sides in the plane, and its ends where no other wall goes on.
+fn add_polyline<const D: usize>(
+    points: &mut WallPoints<D>,
+    scene: &Scene,
+    wall: usize,
+    corners: &[[f64; 2]],
+    closed: bool,
+) {
+    let dp = scene.numerics.spacing;
+    let Wall {
+        velocity, rigid, ..
+    } = &scene.walls[wall];
+    let group = wall as u16;
+    let wide = |x: [f64; 2]| narrow(&[x[0], x[1], 0.0]);
+    let joints = joints(scene, wall);
+    for (x, normal, weight) in joined_points(corners, closed, joints, dp) {
+        points.push(wide(x), narrow(velocity), wide(normal), weight, group);
+    }
+    if closed || *rigid {
+        return;
+    }
+    let (depth, rim) = (ROWS as f64 * dp, 0.25 * dp);
+    for (end, length) in free_ends(corners, joints, depth, rim) {
+        let end = End {
+            point: wide(end.point),
+            outward: wide(end.outward),
+            normal: wide(end.normal),
+            depth,
+            rim,
+        };
+        points.add_end(end, length, group);
+    }
+}
+
+/// Points of a plane through `point` with this normal, within the domain.
+fn add_plane<const D: usize>(
+    points: &mut WallPoints<D>,
+    scene: &Scene,
+    periodic: &Periodic<D>,
+    wall: usize,
+    (point, normal): (&Point, &Point),
+) {
+    let normal = narrow(normal);
+    let sides = std::array::from_fn(|k| periodic.length[k] > 0.0);
+    let (lower, upper) = (narrow(&scene.domain.lower), narrow(&scene.domain.upper));
+    let motion = rigid_motion::<D>(&scene.walls[wall]);
+    let dp = scene.numerics.spacing;
+    for x in plane_points::<D>(&narrow(point), &normal, &lower, &upper, &sides, dp) {
+        let velocity = motion.velocity_at(&x, 0.0);
+        points.push(x, velocity, normal, 1.0, wall as u16);
+    }
+}
+
+/// What all points of a wall or gate share.
+pub(in crate::scene) fn group(
+    scene: &Scene,
+    slip: Slip,
+    moves: bool,
+    target: ForceTarget,
+) -> GroupSpec {
+    let wants_force = scene
+        .gauges
+        .iter()
+        .any(|g| matches!(g.kind, GaugeKind::Force { on } if on == target));
+    GroupSpec {
+        free_slip: slip != Slip::NoSlip,
+        friction: slip.friction(),
+        moves,
+        wants_force,
+    }
+}
+
+/// Directions in which other walls arrive at the first point of an open polyline and leave its last: walls that meet make a
+/// whole corner, if they stay where they are to each other.
+fn joints(scene: &Scene, wall: usize) -> [Option<[f64; 2]>; 2] {
+    let open = |n: usize| match &scene.walls[n] {
+        other @ Wall {
+            geometry:
+                WallGeometry::Polyline {
+                    points,
+                    closed: false,
+                },
+            ..
+        } if other.moves_with(&scene.walls[wall]) => Some(points),
+        _ => None,
+    };
+    let Some(own) = open(wall) else {
+        return [None; 2];
+    };
+    let others = (0..scene.walls.len()).filter(|n| *n != wall);
+    let others: Vec<&Vec<[f64; 2]>> = others.filter_map(open).collect();
+    let eps = 1e-6 * scene.numerics.spacing;
+    let same = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < eps;
+    let way = |a: &[f64; 2], b: &[f64; 2]| {
+        let d = [b[0] - a[0], b[1] - a[1]];
+        scale(1.0 / norm(&d), &d)
+    };
+    let (first, last) = (own[0], own[own.len() - 1]);
+    let before = others.iter().find(|o| same(&o[o.len() - 1], &first));
+    let after = others.iter().find(|o| same(&o[0], &last));
+    [
+        before.map(|o| way(&o[o.len() - 2], &o[o.len() - 1])),
+        after.map(|o| way(&o[0], &o[1])),
+    ]
+}
+
+/// Walls that move as a whole.
+pub(super) fn movers<const D: usize>(scene: &Scene, points: &WallPoints<D>) -> Vec<Mover<D>> {
+    let rigid = scene.walls.iter().enumerate().filter(|(_, w)| w.rigid);
+    rigid
+        .map(|(n, wall)| Mover::new(points, n as u16, rigid_motion(wall)))
+        .collect()
+}
+
+/// How a wall's material moves.
+fn rigid_motion<const D: usize>(wall: &Wall) -> RigidMotion<D> {
+    let (centre, rate, axis) = match wall.rotation {
+        Some(r) => (r.centre, r.rate, r.axis),
+        None => ([0.0; 3], 0.0, [0.0, 0.0, 1.0]),
+    };
+    RigidMotion {
+        velocity: narrow(&wall.velocity),
+        centre: narrow(&centre),
+        rate,
+        axis,
+    }
+}

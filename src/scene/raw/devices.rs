@@ -1,0 +1,105 @@
+//! Tables of walls, gates, inflows and outflows.
+
+use super::*;
+
+choice! {
+    /// What a wall does to material that slides along it.
+    SlipWord {
+        /// material sticks to the wall
+        "no_slip" => NoSlip,
+        /// no shear stress at the wall
+        "free_slip" => FreeSlip,
+        /// Coulomb friction: material sticks until the shear stress is wall_friction times the normal one, then slides
+        "friction" => Friction,
+    }
+}
+
+table! {
+    /// A wall. Exactly one of polyline, circle, box and plane says where.
+    RawWall {
+        /// Planar: a chain of points with the material on its left; the wall lies on its right, four particle rows deep.
+        optional polyline: List<Coordinates<Length>>;
+        /// Whether the polyline's last point joins the first.
+        optional closed: Flag;
+        /// Planar: a round wall with the material inside, a drum.
+        optional circle: RawCircle;
+        /// A solid box, an obstacle.
+        optional r#box: RawBox;
+        /// A plane, with material on the side of its normal.
+        optional plane: RawPlane;
+        /// Whether material sticks or slides.
+        optional slip: SlipWord, default "no_slip";
+        /// Coefficient mu_w of slip = "friction", tan of the wall friction angle.
+        optional wall_friction: Ratio, in Range::from(0.0);
+        /// What velocity and angular_velocity move.
+        optional motion: MotionWord, default "belt";
+        /// Velocity. Of a belt: along its surface, in axisymmetric scenes not along r where the wall reaches the axis. Of a rigid wall: any, of a plane along its normal.
+        optional velocity: Coordinates<Speed>;
+        /// Rate of turning about `centre`: anticlockwise in the plane, in space right-handed about `axis`. Rigid polylines, circles and boxes, and belts that are planes across `axis`; planes cannot turn otherwise.
+        optional angular_velocity: AngularSpeed;
+        /// Centre of rotation; it moves with `velocity`.
+        optional centre: Coordinates<Length>;
+        /// In space: axis of rotation, of any length.
+        optional axis: Coordinates<Ratio>;
+    }
+}
+
+choice! {
+    /// What moves of a wall that has a velocity.
+    MotionWord {
+        /// its surface slides along itself and the wall stays where it is: a conveyor belt
+        "belt" => Belt,
+        /// the wall moves as a whole: a piston, a falling floor, a drum
+        "rigid" => Rigid,
+    }
+}
+
+table! {
+    /// A plate that slides along its own length. Its face runs from `from` to `to` with material on the left (in space on the side of span x (to - from), where an inflow's is the other); opening o uncovers the share o next to `from`, and the plate retracts beyond `to`.
+    RawGate {
+        /// End that opens first.
+        required from: Coordinates<Length>;
+        /// End towards which the plate retracts.
+        required to: Coordinates<Length>;
+        /// In space: the vector along which the face is extruded.
+        optional span: Coordinates<Length>;
+        /// Depth of the plate behind its face, at least 4 spacings; 4 spacings if left out.
+        optional thickness: Length, in Range::above(0.0);
+        /// Largest speed of the plate. Above c0/7 (with courant 0.7) it may be held to that: it moves 0.1 h a step at most.
+        optional max_speed: Speed, in Range::above(0.0), default "0.5 m/s";
+        /// Opening at the start: 0 closed, 1 open.
+        optional start: Ratio, in Range::within(0.0, 1.0), default 0;
+        /// Whether material sticks to its faces.
+        optional slip: SlipWord, default "free_slip";
+        /// Coefficient mu_w of slip = "friction", tan of the wall friction angle.
+        optional wall_friction: Ratio, in Range::from(0.0);
+    }
+}
+
+table! {
+    /// A source: rows of particles enter through the face from `from` to `to`, on its left side, at a set velocity. Rows come in only where a spacing before the face is free: it must be above the surface or in free room, since a source under material is blocked.
+    RawInflow {
+        /// Name of the material that enters.
+        required material: Text;
+        /// One end of the face; in space one corner.
+        required from: Coordinates<Length>;
+        /// Other end of the face; in space the corner next to it.
+        required to: Coordinates<Length>;
+        /// In space: the face's second edge, from `from`.
+        optional span: Coordinates<Length>;
+        /// Velocity of entering material; it points to the left of the way from `from` to `to` (in space: along (to - from) x span).
+        required velocity: Coordinates<Speed>;
+        /// Rate at the start.
+        optional rate: MassRate, in Range::from(0.0), default 0;
+    }
+}
+
+table! {
+    /// A box in which particles are taken out and counted.
+    RawOutflow {
+        /// Lower corner.
+        required lower: Coordinates<Length>;
+        /// Upper corner.
+        required upper: Coordinates<Length>;
+    }
+}

@@ -1,0 +1,68 @@
+//! Pages of studies: what was found, and whether it is current.
+
+use super::*;
+use std::path::Path;
+
+#[test]
+fn pages_say_what_was_found_and_whether_it_is_current() {
+    let desk = Desk::new();
+    let look = |store: &Store| Found::new(&STUDY, Effort::Full, store).unwrap();
+    let pages = desk.pages();
+    let page = || std::fs::read_to_string(pages.join("drops.md")).unwrap();
+    page::write(&pages, &STUDY, &look(&desk.store), None).unwrap();
+    assert!(
+        page().contains("**no result**") && page().contains("0 of 4 runs"),
+        "{}",
+        page()
+    );
+    assert!(page().starts_with("<!-- Written by `sandgate validate`; do not edit. -->\n"));
+    run_all(&desk);
+    assert_eq!(
+        page::standing(&pages, &STUDY, &look(&desk.store)),
+        Standing::Stale
+    );
+
+    let summary = page::write(&pages, &STUDY, &look(&desk.store), None).unwrap();
+    assert_eq!(
+        (summary.met, summary.short, summary.missing, summary.members),
+        (1, 0, 0, (4, 4))
+    );
+    assert_eq!(Summary::read(&page()), Some(summary));
+    assert!(
+        page().contains("| met |") && page().contains("drops_none.svg"),
+        "{}",
+        page()
+    );
+    assert!(pages.join("drops_none.svg").exists());
+    assert_eq!(
+        page::standing(&pages, &STUDY, &look(&desk.store)),
+        Standing::Current
+    );
+    // Again from the same recordings: the same bytes.
+    let before = page();
+    page::write(&pages, &STUDY, &look(&desk.store), None).unwrap();
+    assert_eq!(page(), before);
+
+    // Another solver: the recordings are old, and the page says so.
+    let newer = Store::new(desk.folder.path(), "sources-2");
+    assert_eq!(look(&newer).outdated, 4);
+    page::write(&pages, &STUDY, &look(&newer), None).unwrap();
+    assert!(page().contains("4 of 4 runs are older"), "{}", page());
+    page::write(
+        &pages,
+        &STUDY,
+        &Found::new(&STUDY, Effort::Quick, &newer).unwrap(),
+        None,
+    )
+    .unwrap();
+    assert!(page().contains("judge nothing"), "{}", page());
+    page::write(&pages, &STUDY, &look(&newer), None).unwrap();
+
+    page::write_index(&pages, &[STUDY]).unwrap();
+    let index = std::fs::read_to_string(pages.join("README.md")).unwrap();
+    assert!(
+        index.contains("[drops](drops.md)") && index.contains("met (1 of 1)"),
+        "{index}"
+    );
+    page::write_index(Path::new(&desk.folder.path().join("empty")), &[STUDY]).unwrap();
+}
