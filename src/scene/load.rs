@@ -3,6 +3,7 @@
 //! Only bodies that touch press on each other, by way of others or themselves: not through the air, and not through a shelf or a shut gate
 //! that parts all of one from the other. What is joined beside a shelf counts as above it, as in a fluid it does.
 
+use super::roof::pressures_under_roofs;
 use super::{Body, Point, Scene};
 use crate::math::dot;
 use crate::shape::Lattice;
@@ -13,7 +14,7 @@ const BISECTIONS: u32 = 20;
 
 /// Places of two bodies that are nearer than this over the spacing touch [1]: a row's own distance, and some for lattices that do not fit.
 /// A wall of four tenths of a spacing keeps them further apart.
-const TOUCH: f64 = 1.35;
+pub(super) const TOUCH: f64 = 1.35;
 
 /// The starting loads of a scene.
 pub(super) struct Loads<'a> {
@@ -22,23 +23,92 @@ pub(super) struct Loads<'a> {
     up: usize,
     /// A number for each body, the same for those that touch.
     piles: Vec<usize>,
+    /// Pressures of places of fluids under a roof, for each body [Pa]; see [`pressures_under_roofs`].
+    roofed: Vec<Vec<Option<f64>>>,
 }
 
 impl<'a> Loads<'a> {
-    /// Of a scene in D dimensions whose bodies have these places.
-    pub(super) fn new<const D: usize>(scene: &'a Scene, up: usize, lattices: &[Lattice]) -> Self {
-        Self {
+    /// Of a scene in D dimensions whose bodies have these places, before walls and gates with these points.
+    pub(super) fn new<const D: usize>(
+        scene: &'a Scene,
+        up: usize,
+        lattices: &[Lattice],
+        walls: &[[f64; D]],
+    ) -> Self {
+        let mut loads = Self {
             scene,
             up,
             piles: piles::<D>(scene, lattices),
+            roofed: Vec::new(),
+        };
+        loads.roofed = pressures_under_roofs(&loads, lattices, walls);
+        loads
+    }
+
+    /// Pressure at `x`, which belongs to one of a body's places and lies near it [Pa].
+    pub(super) fn at(&self, body: usize, (number, place): (usize, &Point), x: &Point) -> f64 {
+        match self.roofed[body].get(number) {
+            Some(Some(pressure)) => {
+                let material = self.scene.bodies[body].material;
+                let rho = self.scene.materials[material].material.rest_density();
+                let lower = self.direction() * (place[self.up] - x[self.up]);
+                (pressure + rho * self.gravity() * lower).max(0.0)
+            }
+            _ => self.above(body, x),
         }
+    }
+
+    pub(super) fn scene(&self) -> &Scene {
+        self.scene
+    }
+
+    /// Axis of "up".
+    pub(super) fn up(&self) -> usize {
+        self.up
+    }
+
+    /// Along that axis, gravity's size [m/s^2].
+    pub(super) fn gravity(&self) -> f64 {
+        self.scene.domain.gravity[self.up].abs()
+    }
+
+    /// 1 where up is along the axis, -1 where it is against it.
+    pub(super) fn direction(&self) -> f64 {
+        if self.scene.domain.gravity[self.up] < 0.0 {
+            1.0
+        } else {
+            -1.0
+        }
+    }
+
+    /// Way from a place of a body up to where what touches that ends the first time [m].
+    pub(super) fn top_above(&self, body: usize, place: &Point) -> f64 {
+        let upwards = self.scene.up();
+        let pile = self.piles[body];
+        let inside = |way: f64| {
+            let mut x = *place;
+            x[self.up] += self.direction() * way;
+            let bodies = self.scene.bodies.iter().zip(&self.piles);
+            bodies.filter(|(_, p)| **p == pile).any(|(body, _)| {
+                body.shape.contains(&x) && body.level.is_none_or(|level| dot(&upwards, &x) <= level)
+            })
+        };
+        // Bodies that touch may leave a gap of less than half a spacing.
+        let step = 0.5 * self.scene.numerics.spacing;
+        let domain = &self.scene.domain;
+        let most = domain.upper[self.up] - domain.lower[self.up];
+        let mut way = 0.0;
+        while way < most && inside(way + step) {
+            way += step;
+        }
+        first_change(&inside, way, step)
     }
 
     /// Weight of what lies above a place in a body and touches that, by way of others or itself [Pa].
     pub(super) fn above(&self, body: usize, place: &Point) -> f64 {
         let up = self.up;
-        let g = self.scene.domain.gravity[up];
-        let direction = if g < 0.0 { 1.0 } else { -1.0 };
+        let g = self.gravity();
+        let direction = self.direction();
         let upwards = self.scene.up();
         let weight = |other: &Body| {
             let (lower, upper) = other.shape.bounds();
@@ -50,7 +120,7 @@ impl<'a> Loads<'a> {
             let rho = self.scene.materials[other.material].material.rest_density();
             if height > 0.0 && height.is_finite() {
                 let along = (height, self.scene.numerics.spacing);
-                rho * g.abs() * filled(other, place, (up, direction), along)
+                rho * g * filled(other, place, (up, direction), along)
             } else {
                 0.0
             }
@@ -61,6 +131,12 @@ impl<'a> Loads<'a> {
             .map(|(other, _)| weight(other))
             .sum()
     }
+}
+
+/// Lower and upper end of each periodic axis [m].
+pub(super) fn periods<const D: usize>(scene: &Scene) -> [Option<(f64, f64)>; D] {
+    let domain = &scene.domain;
+    std::array::from_fn(|k| domain.periodic[k].then_some((domain.lower[k], domain.upper[k])))
 }
 
 /// The least number of the bodies that each one touches, by way of others.
@@ -78,10 +154,7 @@ fn piles<const D: usize>(scene: &Scene, lattices: &[Lattice]) -> Vec<usize> {
         .map(|p| std::array::from_fn(|k| p[k]))
         .collect();
     let near = TOUCH * scene.numerics.spacing;
-    let domain = &scene.domain;
-    let periods =
-        std::array::from_fn(|k| domain.periodic[k].then_some((domain.lower[k], domain.upper[k])));
-    let cells = CellGrid::build(&points, near, &periods);
+    let cells = CellGrid::build(&points, near, &periods::<D>(scene));
     for (x, &own) in points.iter().zip(&owner) {
         cells.for_each_within(x, near, |j, _, _| {
             let (a, b) = (piles[own], piles[owner[j]]);
@@ -121,21 +194,28 @@ fn filled(
             (true, true) => step,
             (false, false) => 0.0,
             _ => {
-                let (mut low, mut high) = (0.0, step);
-                for _ in 0..BISECTIONS {
-                    let middle = 0.5 * (low + high);
-                    if inside(from + middle) == was {
-                        low = middle;
-                    } else {
-                        high = middle;
-                    }
-                }
-                if was { low } else { step - low }
+                let change = first_change(&inside, from, step) - from;
+                if was { change } else { step - change }
             }
         };
         was = is;
     }
     length
+}
+
+/// Where, on a way of length `step` from `from`, a body ends or begins.
+fn first_change(inside: &impl Fn(f64) -> bool, from: f64, step: f64) -> f64 {
+    let was = inside(from);
+    let (mut low, mut high) = (0.0, step);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if inside(from + middle) == was {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    from + low
 }
 
 #[cfg(test)]
@@ -173,7 +253,7 @@ until = 1
             .iter()
             .map(|b| crate::shape::lattice(&b.shape, None, 0.005, 2, false))
             .collect();
-        let loads = Loads::new::<2>(&scene, 1, &lattices);
+        let loads = Loads::new::<2>(&scene, 1, &lattices, &[]);
         loads.above(scene.bodies.len() - 1, &[0.05, 0.0, 0.0])
     }
 

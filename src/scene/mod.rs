@@ -15,6 +15,7 @@ mod load;
 mod quality;
 mod raw;
 mod reference;
+mod roof;
 mod steady_flow;
 mod types;
 

@@ -21,6 +21,7 @@ mod paper_b;
 mod phases;
 mod rest;
 mod rheology;
+mod roofs;
 mod silo;
 mod tension;
 mod validity;

@@ -6,6 +6,7 @@ mod particles;
 mod plates;
 mod walls;
 
+use crate::boundary::WallPoints;
 use crate::math::{Geometry, Vector};
 use crate::solver::{Periodic, Plan, Scheme, Sink};
 use crate::state::State;
@@ -16,7 +17,7 @@ use super::{Dimension, Point, Scene};
 use inflows::source;
 use overlap::check_overlap;
 use particles::state;
-use plates::plates;
+use plates::{plates, with_plates};
 use walls::{movers, walls};
 
 pub(super) use walls::group;
@@ -51,7 +52,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         Scheme::PaperA(_) => ghost_depth(scene, &walls),
         Scheme::Implicit | Scheme::PaperB(_) => Vec::new(),
     };
-    let state = state::<D>(scene)?;
+    let state = state(scene, &roofs(scene, &walls))?;
     let plates = plates(scene, &walls, &state.grains.position);
     let plan = Plan {
         numerics: scene.numerics.clone(),
@@ -70,6 +71,22 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     };
     check_overlap(scene, &plan, &state)?;
     Ok((plan, state))
+}
+
+/// Points of walls and gates that may be roofs of fluids at the start.
+fn roofs<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<Vector<D>> {
+    let has_fluids = scene.materials.iter().any(|m| m.material.is_fluid());
+    if !has_fluids || scene.numerics.scheme != Scheme::Implicit {
+        return Vec::new();
+    }
+    let openings: Vec<f64> = scene.gates.iter().map(|g| g.start).collect();
+    let all = with_plates(walls, &plates(scene, walls, &[]), &openings);
+    let shown = all
+        .position
+        .iter()
+        .zip(&all.weight)
+        .filter(|(_, w)| **w > 0.5);
+    shown.map(|(x, _)| *x).collect()
 }
 
 /// What a scene's coordinates stand for.

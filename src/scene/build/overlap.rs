@@ -1,5 +1,6 @@
 //! Whether a scene can start: no particle inside a wall or gate.
 
+use super::plates::with_plates;
 use crate::math::{Vector, dot};
 use crate::scene::Scene;
 use crate::solver::Plan;
@@ -18,12 +19,8 @@ pub(super) fn check_overlap<const D: usize>(
     let sides: [Option<(f64, f64)>; D] = std::array::from_fn(|k| {
         (plan.periodic.length[k] > 0.0).then(|| (plan.lower[k], plan.upper[k]))
     });
-    let mut walls = plan.walls.clone();
-    for (plate, gate) in plan.plates.iter().zip(&state.gates) {
-        let mut plate = plate.clone();
-        plate.append(&mut walls);
-        plate.place(&mut walls, gate.opening, 0.0);
-    }
+    let openings: Vec<f64> = state.gates.iter().map(|g| g.opening).collect();
+    let walls = with_plates(&plan.walls, &plan.plates, &openings);
     let shown: Vec<usize> = (0..walls.len())
         .filter(|&w| walls.weight[w] > 0.5)
         .collect();

@@ -45,3 +45,18 @@ pub(super) fn plates<const D: usize>(
     };
     scene.gates.iter().enumerate().map(plate).collect()
 }
+
+/// Points of fixed walls and, at these openings, of plates.
+pub(super) fn with_plates<const D: usize>(
+    walls: &WallPoints<D>,
+    plates: &[Plate<D>],
+    openings: &[f64],
+) -> WallPoints<D> {
+    let mut all = walls.clone();
+    for (plate, opening) in plates.iter().zip(openings) {
+        let mut plate = plate.clone();
+        plate.append(&mut all);
+        plate.place(&mut all, *opening, 0.0);
+    }
+    all
+}
