@@ -42,11 +42,11 @@ impl<const D: usize> Solver<D> {
                 pushes.clear();
                 let pushing = self.pushing(state, (b * CHUNK + row, seen), dt);
                 self.push_points(state, &pushing, near, &mut pushes);
-                part_at_corners(&mut pushes, self.numerics.spacing);
+                let grains = !self.material_of(state, b * CHUNK + row).is_fluid();
+                part_at_corners(&mut pushes, grains, self.numerics.spacing);
                 for push in &pushes {
-                    for (sum, part) in borne[push.group as usize].iter_mut().zip(&push.impulse) {
-                        *sum += part;
-                    }
+                    let borne = &mut borne[push.group as usize];
+                    *borne = add(borne, &push.impulse());
                 }
             }
         }
@@ -114,33 +114,35 @@ impl<const D: usize> Solver<D> {
         near: &[u32],
         pushes: &mut Vec<Push<D>>,
     ) {
-        let xi = &state.grains.position[pushing.i];
+        let i = pushing.i;
+        let xi = &state.grains.position[i];
         let support = self.kernel.support();
+        let by_stress = pushing.dt * self.width * self.volume[i];
         for &w in near {
             let (x, r) = self.wall_offset(xi, w);
             if self.walls.weight[w as usize] == 0.0 || r >= support || r == 0.0 {
                 continue;
             }
-            let stress = self.stress_push(state, pushing, w, (&x, r));
+            let (pressure, shear) = self.stress_push(state, pushing, w, (&x, r));
             let other = self.other_push(state, pushing, w, (&x, r));
-            let by_stress = pushing.dt * self.width * self.volume[pushing.i];
             pushes.push(Push {
                 group: self.walls.group[w as usize],
                 normal: self.wall_normal(xi, w, state),
                 to: scale(-1.0, &x),
-                impulse: std::array::from_fn(|k| by_stress * stress[k] + other[k]),
+                pressure: scale(by_stress, &pressure),
+                rest: add(&scale(by_stress, &shear), &other),
             });
         }
     }
 
-    /// Of pressure and stress on the particle, over its volume: -2 p g + 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w).
+    /// Of pressure, -2 p g, and of shear stress, 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w), on the particle and over its volume.
     fn stress_push(
         &self,
         state: &State<D>,
         pushing: &Pushing<D>,
         w: u32,
         (x, r): (&Vector<D>, f64),
-    ) -> Vector<D> {
+    ) -> (Vector<D>, Vector<D>) {
         let i = pushing.i;
         let xi = &state.grains.position[i];
         let vf = self.wall_volume(i, w, self.walls.weight[w as usize]) * self.kernel.f(r);
@@ -149,20 +151,17 @@ impl<const D: usize> Solver<D> {
         let seen = |a: Vector<D>| -> Vector<D> { projection.map_or(a, |n| scale(dot(&n, &a), &n)) };
         let flat = pushing.seen.is_some_and(|w| w.flat);
         let push = if flat { seen(g) } else { g };
-        let mut force = scale(-2.0 * self.mean_pressure(i), &push);
+        let mut pressure = scale(-2.0 * self.mean_pressure(i), &push);
         if let Some(uneven) = self.uneven_pressure.get(i) {
-            force = add(&force, &scale(2.0, &apply(uneven, &push)));
+            pressure = add(&pressure, &scale(2.0, &apply(uneven, &push)));
         }
-        force = add(
-            &force,
-            &scale(2.0, &seen(apply(&self.viscous.stress(i), &g))),
-        );
+        let shear = scale(2.0, &seen(apply(&self.viscous.stress(i), &g)));
         let pg = seen(g);
         let dissipation = 2.0 * (D as f64 + 2.0);
         let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];
         let against = sub(&self.viscous.velocity[i], &self.walls.velocity[w as usize]);
         let drag = -2.0 * self.numerics.pair_viscosity_share * c * dot(&pg, &against);
-        add(&force, &scale(drag, &pg))
+        (pressure, add(&shear, &scale(drag, &pg)))
     }
 
     /// Impulse on the particle of what is not a stress: each point's part of K (W4), of L (W7) and of (W5), as they were counted.
