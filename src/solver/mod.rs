@@ -44,6 +44,7 @@ mod rest;
 mod ring;
 #[cfg(test)]
 mod ring_tests;
+mod sample;
 mod shift;
 #[cfg(test)]
 mod sweep_tests;
