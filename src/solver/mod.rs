@@ -33,7 +33,9 @@ mod packing;
 mod pair;
 mod paper_a;
 mod paper_b;
+#[cfg(any(test, feature = "cli"))]
 mod passes;
+#[cfg(any(test, feature = "cli"))]
 mod plain;
 mod plan;
 mod plastic;
@@ -44,6 +46,7 @@ mod rest;
 mod ring;
 #[cfg(test)]
 mod ring_tests;
+#[cfg(any(test, feature = "cli"))]
 mod sample;
 mod shift;
 #[cfg(test)]
@@ -65,6 +68,7 @@ pub use numerics::{Numerics, Scheme, YieldForm};
 pub use outputs::three;
 pub use paper_a::{PaperA, Sweeps};
 pub use paper_b::PaperB;
+#[cfg(any(test, feature = "cli"))]
 pub use passes::{Pass, Passes};
 pub use plan::{OnMove, Plan, StepBound, StepInputs, SubStep};
 pub use rest::StaysAwake;
