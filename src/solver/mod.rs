@@ -41,6 +41,7 @@ mod plan;
 mod plastic;
 mod pore;
 mod pressure;
+mod pressure_row;
 mod record;
 mod rest;
 mod ring;
