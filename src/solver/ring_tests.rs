@@ -6,7 +6,7 @@ use super::sample::{self, SPACING as DP};
 use super::*;
 use crate::boundary::{GroupSpec, polyline_points};
 use crate::math::dot;
-use crate::state::{Grains, Random};
+use crate::state::{Grains, Random, State};
 
 const RADIUS: usize = 20;
 const HEIGHT: usize = 20;
