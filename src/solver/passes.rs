@@ -1,4 +1,5 @@
 //! The default scheme's sweeps one at a time, over disordered sand without walls: for benchmarks and tests of the sweeps.
+//! `agreement` compares them with their plain forms.
 
 mod agreement;
 

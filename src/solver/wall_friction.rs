@@ -8,7 +8,8 @@
 //! T = x - (what is beyond mu_w (p - n.tau n)),   s = (x - T)/r.                                           (W3)
 //!
 //! Material that sticks has s = 0 and does not creep; where it slides T is on the disc, against the slip. Loose material that surely slides
-//! has that T from the first (`expect_friction`) and to the last (`even_friction`).
+//! has that T from the first (`expect_friction`) and to the last (`even_friction`). What a sweep sees of faces is `wall_contact`, who
+//! holds on to them in a step `friction_row`.
 
 use crate::math::{Tensor, Vector, apply, dot, inverse, norm, scale, sub};
 use crate::state::State;
