@@ -1,7 +1,7 @@
 //! Free ends of walls: a polyline that stops in the open is as thick as its rows, and what stands beside its end sees that
 //! face and not the one in front (the lip of an outlet).
 
-use super::points::WallPoints;
+use super::wall_points::WallPoints;
 use crate::math::{Vector, dot, scale, sub};
 
 /// The face at a free end of a polyline.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::points::WallPoints;
+use super::wall_points::WallPoints;
 use crate::math::{Tensor, Vector, add, apply, multiply, norm, scale, sub};
 
 /// How a rigid body moves: its centre at `velocity`, turning about it.

@@ -1,6 +1,7 @@
 //! A gate's plate: a rigid slab that slides along its own length and vanishes behind the end it retracts to.
 
-use super::points::{ROWS, WallPoints};
+use super::points::ROWS;
+use super::wall_points::WallPoints;
 use crate::math::{Vector, add, dot, norm, scale, sub};
 
 /// Share of a point below which it is hidden [1].

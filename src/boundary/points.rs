@@ -1,132 +1,9 @@
 //! Where wall points lie: rows behind polylines, planes and in boxes.
 
-use std::collections::HashMap;
-
-use super::ends::End;
 use crate::math::{Vector, add, dot, norm, scale, sub};
 
 /// Rows of points behind a wall's surface: enough for a support of 2 h at h/dp <= 2.
 pub const ROWS: usize = 4;
-
-/// What all points of one wall or gate share.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GroupSpec {
-    /// Free slip: only the normal part of motion is seen.
-    pub free_slip: bool,
-    /// Coulomb friction mu_w >= 0 of a face with free slip, 0: none [1].
-    pub friction: f64,
-    /// Whether its points move against the material, gates apart: then sliding along it counts as motion, too.
-    pub moves: bool,
-    /// Whether somebody reads the force on it.
-    pub wants_force: bool,
-}
-
-/// All wall points: fixed walls first, then gates.
-#[derive(Clone, Debug, Default)]
-pub struct WallPoints<const D: usize> {
-    /// Position [m].
-    pub position: Vec<Vector<D>>,
-    /// Velocity [m/s].
-    pub velocity: Vec<Vector<D>>,
-    /// Unit normal towards the material (free slip only needs it).
-    pub normal: Vec<Vector<D>>,
-    /// Share of a full point, 0 to 1 (spacing differs from dp, or the plate's end is half hidden).
-    pub weight: Vec<f64>,
-    /// Index into `groups`.
-    pub group: Vec<u16>,
-    /// One per wall, then one per gate.
-    pub groups: Vec<GroupSpec>,
-    /// Faces at free ends of walls.
-    pub ends: Vec<End<D>>,
-    /// The end that each point belongs to, counted from 1, 0: none; shorter than the points or empty where there are none.
-    pub end: Vec<u16>,
-}
-
-impl<const D: usize> WallPoints<D> {
-    /// Adds a point.
-    pub fn push(
-        &mut self,
-        position: Vector<D>,
-        velocity: Vector<D>,
-        normal: Vector<D>,
-        weight: f64,
-        group: u16,
-    ) {
-        self.position.push(position);
-        self.velocity.push(velocity);
-        self.normal.push(normal);
-        self.weight.push(weight);
-        self.group.push(group);
-    }
-
-    /// Number of points.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.position.len()
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.position.is_empty()
-    }
-
-    /// Keeps the points whose position satisfies `wanted`.
-    pub fn retain(&mut self, wanted: impl Fn(&Vector<D>) -> bool) {
-        let keep: Vec<usize> = (0..self.len())
-            .filter(|&i| wanted(&self.position[i]))
-            .collect();
-        self.pick(&keep);
-    }
-
-    fn pick(&mut self, keep: &[usize]) {
-        fn pick<T: Copy>(field: &mut Vec<T>, keep: &[usize]) {
-            *field = keep.iter().map(|&i| field[i]).collect();
-        }
-        let count = self.len();
-        pick(&mut self.position, keep);
-        pick(&mut self.velocity, keep);
-        pick(&mut self.normal, keep);
-        pick(&mut self.weight, keep);
-        pick(&mut self.group, keep);
-        if !self.ends.is_empty() {
-            self.end.resize(count, 0);
-            pick(&mut self.end, keep);
-        }
-    }
-
-    /// Drops points closer than half a spacing to an earlier one (walls that overlap at corners). `together`: whether two groups
-    /// stay where they are to each other; what would part keeps all of its points.
-    pub fn drop_doubles(&mut self, spacing: f64, together: impl Fn(u16, u16) -> bool) {
-        let reach = 0.5 * spacing;
-        let cell =
-            |x: &Vector<D>| -> [i64; D] { std::array::from_fn(|k| (x[k] / reach).floor() as i64) };
-        let mut seen: HashMap<[i64; D], Vec<usize>> = HashMap::new();
-        let mut keep = Vec::new();
-        for i in 0..self.len() {
-            let here = cell(&self.position[i]);
-            let near = (0..3usize.pow(D as u32)).any(|n| {
-                let mut m = n;
-                let c = std::array::from_fn(|k| {
-                    let o = (m % 3) as i64 - 1;
-                    m /= 3;
-                    here[k] + o
-                });
-                seen.get(&c).is_some_and(|v| {
-                    v.iter().any(|&j| {
-                        norm(&sub(&self.position[i], &self.position[j])) < reach
-                            && together(self.group[i], self.group[j])
-                    })
-                })
-            });
-            if !near {
-                seen.entry(here).or_default().push(i);
-                keep.push(i);
-            }
-        }
-        self.pick(&keep);
-    }
-}
 
 /// (position, normal, weight) of the points behind a polyline with the material on its left.
 ///
@@ -150,72 +27,110 @@ pub fn joined_points(
     joints: [Option<[f64; 2]>; 2],
     spacing: f64,
 ) -> Vec<([f64; 2], [f64; 2], f64)> {
-    let n = corners.len();
-    let segments = if closed { n } else { n - 1 };
-    let tangent = |s: usize| {
-        let d = sub(&corners[(s + 1) % n], &corners[s % n]);
-        scale(1.0 / norm(&d), &d)
+    let polyline = Polyline {
+        corners,
+        closed,
+        joints,
     };
-    let right = |t: &[f64; 2]| [t[1], -t[0]];
     let mut points = Vec::new();
     for row in 0..ROWS {
         let depth = (row as f64 + 0.5) * spacing;
-        // Corner c moved to the row: the two neighbouring rows meet there.
-        let moved = |c: usize| -> [f64; 2] {
-            let before = if c > 0 || closed {
-                Some(tangent((c + segments - 1) % segments))
-            } else {
-                joints[0]
-            };
-            let after = if c < segments || closed {
-                Some(tangent(c % segments))
-            } else {
-                joints[1]
-            };
-            let corner = &corners[c % n];
-            match (before, after) {
-                (Some(a), Some(b)) => {
-                    let (ra, rb) = (right(&a), right(&b));
-                    let m = add(&ra, &rb);
-                    // Limited so that hairpins do not shoot out.
-                    let f = 2.0 / dot(&m, &m).max(0.25);
-                    add(corner, &scale(depth * f, &m))
-                }
-                (Some(a), None) => add(corner, &scale(depth, &right(&a))),
-                (None, Some(b)) => add(corner, &scale(depth, &right(&b))),
-                (None, None) => *corner,
-            }
-        };
-        for s in 0..segments {
-            let (a, b) = (moved(s), moved(s + 1));
-            let t = tangent(s);
-            let length = dot(&sub(&b, &a), &t);
-            let free_start = s == 0 && !closed && joints[0].is_none();
-            let free_end = s + 1 == segments && !closed && joints[1].is_none();
-            // Half a spacing is left out at a free end; a joint's point belongs to the segment that starts there.
-            let ends = 0.5 * (f64::from(u8::from(free_start)) + f64::from(u8::from(free_end)));
-            let count = (length / spacing + 1.0 - ends).round();
-            if count < 1.0 || length <= 0.0 {
-                continue;
-            }
-            let step = length / (count - 1.0 + ends).max(1.0);
-            let first = if free_start { 0.5 * step } else { 0.0 };
-            let shared_end = !free_end;
-            let normal = scale(-1.0, &right(&t));
-            let count = count as usize;
-            for k in 0..count {
-                if shared_end && k + 1 == count && count > 1 {
-                    break;
-                }
-                points.push((
-                    add(&a, &scale(first + k as f64 * step, &t)),
-                    normal,
-                    step / spacing,
-                ));
-            }
+        for s in 0..polyline.segments() {
+            polyline.add_segment(s, depth, spacing, &mut points);
         }
     }
     points
+}
+
+/// A wall's surface in the plane.
+struct Polyline<'a> {
+    corners: &'a [[f64; 2]],
+    closed: bool,
+    /// Directions of what goes on from its ends: see [`joined_points`].
+    joints: [Option<[f64; 2]>; 2],
+}
+
+/// Normal of a direction, to its right.
+fn right(t: &[f64; 2]) -> [f64; 2] {
+    [t[1], -t[0]]
+}
+
+impl Polyline<'_> {
+    fn segments(&self) -> usize {
+        let n = self.corners.len();
+        if self.closed { n } else { n - 1 }
+    }
+
+    /// Unit direction of segment s.
+    fn tangent(&self, s: usize) -> [f64; 2] {
+        let n = self.corners.len();
+        let d = sub(&self.corners[(s + 1) % n], &self.corners[s % n]);
+        scale(1.0 / norm(&d), &d)
+    }
+
+    /// Corner c moved to the row at this depth [m]: the two neighbouring rows meet there.
+    fn moved(&self, c: usize, depth: f64) -> [f64; 2] {
+        let segments = self.segments();
+        let before = if c > 0 || self.closed {
+            Some(self.tangent((c + segments - 1) % segments))
+        } else {
+            self.joints[0]
+        };
+        let after = if c < segments || self.closed {
+            Some(self.tangent(c % segments))
+        } else {
+            self.joints[1]
+        };
+        let corner = &self.corners[c % self.corners.len()];
+        match (before, after) {
+            (Some(a), Some(b)) => {
+                let (ra, rb) = (right(&a), right(&b));
+                let m = add(&ra, &rb);
+                // Limited so that hairpins do not shoot out.
+                let f = 2.0 / dot(&m, &m).max(0.25);
+                add(corner, &scale(depth * f, &m))
+            }
+            (Some(a), None) => add(corner, &scale(depth, &right(&a))),
+            (None, Some(b)) => add(corner, &scale(depth, &right(&b))),
+            (None, None) => *corner,
+        }
+    }
+
+    /// Adds the points of segment s in the row at this depth [m].
+    fn add_segment(
+        &self,
+        s: usize,
+        depth: f64,
+        spacing: f64,
+        points: &mut Vec<([f64; 2], [f64; 2], f64)>,
+    ) {
+        let (a, b) = (self.moved(s, depth), self.moved(s + 1, depth));
+        let t = self.tangent(s);
+        let length = dot(&sub(&b, &a), &t);
+        let free_start = s == 0 && !self.closed && self.joints[0].is_none();
+        let free_end = s + 1 == self.segments() && !self.closed && self.joints[1].is_none();
+        // Half a spacing is left out at a free end; a joint's point belongs to the segment that starts there.
+        let ends = 0.5 * (f64::from(u8::from(free_start)) + f64::from(u8::from(free_end)));
+        let count = (length / spacing + 1.0 - ends).round();
+        if count < 1.0 || length <= 0.0 {
+            return;
+        }
+        let step = length / (count - 1.0 + ends).max(1.0);
+        let first = if free_start { 0.5 * step } else { 0.0 };
+        let shared_end = !free_end;
+        let normal = scale(-1.0, &right(&t));
+        let count = count as usize;
+        for k in 0..count {
+            if shared_end && k + 1 == count && count > 1 {
+                break;
+            }
+            points.push((
+                add(&a, &scale(first + k as f64 * step, &t)),
+                normal,
+                step / spacing,
+            ));
+        }
+    }
 }
 
 /// Points behind the plane through `point` with unit `normal`, inside lower..upper widened by the rows on axes that are
@@ -230,23 +145,7 @@ pub fn plane_points<const D: usize>(
     spacing: f64,
 ) -> Vec<Vector<D>> {
     let margin = ROWS as f64 * spacing;
-    let axis = (0..D).find(|&k| normal[k].abs() > 1.0 - 1e-12);
-    // Tangents: the other axes for an axis-aligned plane (so that its points continue the particles' lattice).
-    let mut tangents: Vec<Vector<D>> = Vec::new();
-    for k in 0..D {
-        if Some(k) == axis {
-            continue;
-        }
-        let mut t = [0.0; D];
-        t[k] = 1.0;
-        let mut rest = sub(&t, &scale(dot(&t, normal), normal));
-        for u in &tangents {
-            rest = sub(&rest, &scale(dot(&rest, u), u));
-        }
-        if norm(&rest) > 1e-6 && tangents.len() + 1 < D {
-            tangents.push(scale(1.0 / norm(&rest), &rest));
-        }
-    }
+    let tangents = plane_tangents(normal);
     let reach = (norm(&sub(upper, lower)) + 2.0 * margin) / spacing;
     let half = reach.ceil() as i64;
     let start = {
@@ -285,6 +184,28 @@ pub fn plane_points<const D: usize>(
         }
     }
     points
+}
+
+/// Unit vectors along a plane with this unit normal, at right angles: the other axes for an axis-aligned plane (so that its
+/// points continue the particles' lattice).
+fn plane_tangents<const D: usize>(normal: &Vector<D>) -> Vec<Vector<D>> {
+    let axis = (0..D).find(|&k| normal[k].abs() > 1.0 - 1e-12);
+    let mut tangents: Vec<Vector<D>> = Vec::new();
+    for k in 0..D {
+        if Some(k) == axis {
+            continue;
+        }
+        let mut t = [0.0; D];
+        t[k] = 1.0;
+        let mut rest = sub(&t, &scale(dot(&t, normal), normal));
+        for u in &tangents {
+            rest = sub(&rest, &scale(dot(&rest, u), u));
+        }
+        if norm(&rest) > 1e-6 && tangents.len() + 1 < D {
+            tangents.push(scale(1.0 / norm(&rest), &rest));
+        }
+    }
+    tangents
 }
 
 /// (position, outward normal) of the outer rows of a solid box.

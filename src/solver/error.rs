@@ -1,5 +1,10 @@
 //! Why a step can fail. Every message names particle, time and quantity.
 
+use crate::state::State;
+
+use super::Solver;
+use super::outputs::three;
+
 /// Errors of the solver.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SolverError {
@@ -59,4 +64,22 @@ pub enum SolverError {
         /// Smallest step allowed [s].
         smallest: f64,
     },
+}
+
+impl<const D: usize> Solver<D> {
+    /// The first particle for which `fine` is false, as an error.
+    pub(super) fn not_finite(
+        &self,
+        state: &State<D>,
+        quantity: &'static str,
+        fine: impl Fn(usize) -> bool,
+    ) -> SolverError {
+        let i = (0..state.grains.len()).find(|&i| !fine(i)).unwrap_or(0);
+        SolverError::NotFinite {
+            particle: state.grains.id.get(i).copied().unwrap_or(0),
+            time: state.time,
+            quantity,
+            position: state.grains.position.get(i).map_or([0.0; 3], three),
+        }
+    }
 }

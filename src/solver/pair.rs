@@ -5,7 +5,7 @@ use crate::math::{LANES, Quad, Tensor, Vector};
 use super::barrier::Rub;
 use super::meeting::KINDS;
 use super::mirror::Image;
-use super::wall_friction::Contact;
+use super::wall_contact::Contact;
 
 /// Sums over the wall points that a particle sees. P projects on the normal at free slip, else P = I; w weight;
 /// g = V_i w grad W.

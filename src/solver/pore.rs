@@ -5,7 +5,12 @@
 //! left, p - p_w >= 0, presses grain on grain: the effective pressure, which friction is made of ([B] section 2 has a
 //! column's weight in its place, its eq. 10).
 //!
+//! This file is the equation and its rows; `solve` solves it, `effective` is what is left to press grain on grain.
+//!
 //! Symbols: k_ij = 2 V_i V_j |F|; sum_j k_ij (p_i - p_j - rho_w g.x_ij) = 0, x_ij = x_i - x_j; Dirichlet rows: p_j of fluids.
+
+mod effective;
+mod solve;
 
 use crate::kernel::WendlandC2;
 use crate::math::{Four, LANES, Lanes, Quad, Vector, dot, in_lanes, norm};
@@ -20,9 +25,6 @@ const SURFACE: f64 = 0.8;
 
 /// What the residual may be, over that of an error of a spacing's buoyant weight [1].
 const TOLERANCE: f64 = 1e-3;
-
-/// Most iterations in a step: the next goes on from there.
-const MOST_ITERATIONS: u32 = 200;
 
 /// Work arrays of the solve; empty in scenes without saturated material.
 #[derive(Debug, Default)]
@@ -97,49 +99,6 @@ impl<const D: usize> Solver<D> {
         self.pore = work;
     }
 
-    /// Effective pressures from the pressures and the state's pore pressures.
-    pub(super) fn subtract_pore_pressure(&mut self, state: &State<D>) {
-        let grains = &state.grains;
-        let mut own = std::mem::take(&mut self.pore.residual);
-        own.resize(grains.len(), 0.0);
-        self.workers.each(&mut own, |i, p| {
-            let material = &self.materials[grains.phase[i] as usize];
-            *p = if material.is_saturated() {
-                self.pressure[i] - self.pore_pressure(state, i)
-            } else if material.is_fluid() {
-                0.0
-            } else {
-                self.pressure[i]
-            };
-        });
-        let mut near = std::mem::take(&mut self.pore.near);
-        near.resize(grains.len(), Quad::default());
-        self.workers.each(&mut near, |i, of| {
-            let porous = f64::from(u8::from(self.is_porous(state, i)));
-            *of = Quad([porous, porous * own[i], 0.0, 0.0]);
-        });
-        let mut effective = std::mem::take(&mut self.effective);
-        effective.resize(grains.len(), 0.0);
-        self.workers
-            .blocks_read(&self.lists.blocks, &mut effective, |block, first, out| {
-                in_lanes!(
-                    self.arch,
-                    |lanes| for (row, p) in out.iter_mut().enumerate() {
-                        let i = first + row;
-                        *p = if self.is_porous(state, i) {
-                            let own = (i, own[i]);
-                            self.smoothed(lanes, state, &near, own, block, row).max(0.0)
-                        } else {
-                            own[i]
-                        };
-                    }
-                );
-            });
-        self.effective = effective;
-        self.pore.near = near;
-        self.pore.residual = own;
-    }
-
     /// Calls `visit` for the neighbours of a row, four at a time. Only before the coefficients are multiplied by viscosity.
     #[inline(always)]
     fn for_each_four<L: Lanes>(
@@ -172,44 +131,6 @@ impl<const D: usize> Solver<D> {
             }
             let k = over * g2 * Four::load(lanes, c);
             visit(Near { of, k, down });
-        }
-    }
-
-    /// Mean of the effective pressures of a particle and its saturated neighbours, each carried to the particle's place with
-    /// the buoyant weight: the packing's own forces, which a bed at rest holds, are no friction.
-    #[inline(always)]
-    fn smoothed<L: Lanes>(
-        &self,
-        lanes: L,
-        state: &State<D>,
-        near: &[Quad],
-        (i, own): (usize, f64),
-        block: &Block<D>,
-        row: usize,
-    ) -> f64 {
-        let grains = &self.materials[state.grains.phase[i] as usize].grains;
-        let buoyant = grains.rest_density() - grains.pore_density;
-        let zero = Four::splat(lanes, 0.0);
-        let (mut sum, mut weights, mut fall) = (zero, zero, zero);
-        self.for_each_four(lanes, near, block, row, |four| {
-            let [porous, pressure, ..] = four.of;
-            sum += four.k * pressure;
-            weights += four.k * porous;
-            fall += four.down * porous;
-        });
-        // The particle's own cell counts as |F| at r = 0 does; k x_ij = -2 g_ij.
-        let own_weight = 2.0 * self.volume[i] * self.kernel.f(0.0).abs();
-        let sum = own_weight * own + sum.sum() - 2.0 * buoyant * fall.sum();
-        sum / (own_weight + weights.sum())
-    }
-
-    /// Pressure that presses grain on grain, or on a wall: that of the particle but for pores and fluids [Pa].
-    #[must_use]
-    pub fn effective_pressure(&self) -> &[f64] {
-        if self.effective.is_empty() {
-            self.normal_pressure()
-        } else {
-            &self.effective
         }
     }
 
@@ -341,87 +262,6 @@ impl<const D: usize> Solver<D> {
             // rho_w g.(x - air).
             let head = 0.5 * self.numerics.spacing * rho_w * dot(&self.gravity, &inwards) / size;
             sums.given += joint * head;
-        }
-    }
-
-    /// sum_j 2 V_j |F| d_j: d is 0 for what has no pores.
-    #[inline(always)]
-    fn weighted_sum<L: Lanes>(&self, lanes: L, d: &[f64], block: &Block<D>, row: usize) -> f64 {
-        let mut sum = Four::splat(lanes, 0.0);
-        let range = block.groups(row);
-        let (j, g) = (&block.j[range.clone()], &block.g[range.clone()]);
-        for ((j, g), c) in j.iter().zip(g).zip(&block.c[range]) {
-            let mut g2 = Four::splat(lanes, 0.0);
-            for g in g {
-                let g = Four::load(lanes, g);
-                g2 += g * g;
-            }
-            let other = Four::gather(lanes, |m| d[j[m] as usize]);
-            sum += g2 * Four::load(lanes, c) * other;
-        }
-        sum.sum() / (D as f64 + 2.0)
-    }
-
-    /// Conjugate gradients with the diagonal.
-    fn iterate(&self, pore: &mut [f64], work: &mut Work, limit2: f64) {
-        let Work {
-            diagonal,
-            residual,
-            direction,
-            product,
-            ..
-        } = work;
-        let n = pore.len();
-        let over = |i: usize, r: f64| {
-            if diagonal[i] > 0.0 {
-                r / diagonal[i]
-            } else {
-                0.0
-            }
-        };
-        let scalar = |i: usize, r: &[f64]| [r[i] * r[i], r[i] * over(i, r[i])];
-        let [mut norm2, mut rz] = self.workers.sums(n, |i| scalar(i, residual));
-        // The last solve's directions are no part of the state.
-        direction.fill(0.0);
-        let mut beta = 0.0;
-        for _ in 0..MOST_ITERATIONS {
-            if norm2 <= limit2 || rz <= 0.0 {
-                return;
-            }
-            let r = &*residual;
-            self.workers
-                .each(direction, |i, d| *d = over(i, r[i]) + beta * *d);
-            let d = &*direction;
-            let curvature =
-                self.workers
-                    .blocks_sum(&self.lists.blocks, product, |block, first, out| {
-                        let mut sum = 0.0;
-                        in_lanes!(
-                            self.arch,
-                            |lanes| for (row, o) in out.iter_mut().enumerate() {
-                                let i = first + row;
-                                *o = 0.0;
-                                if diagonal[i] > 0.0 {
-                                    let others = self.weighted_sum(lanes, d, block, row);
-                                    *o = diagonal[i] * d[i] - self.volume[i] * others;
-                                    sum += d[i] * *o;
-                                }
-                            }
-                        );
-                        sum
-                    });
-            if curvature.is_nan() || curvature <= 0.0 {
-                return;
-            }
-            let step = rz / curvature;
-            let q = &*product;
-            self.workers.both(pore, residual, |i, p, r| {
-                *p += step * d[i];
-                *r -= step * q[i];
-                []
-            });
-            let [next2, next] = self.workers.sums(n, |i| scalar(i, residual));
-            (norm2, beta, rz) = (next2, next / rz, next);
         }
     }
 }

@@ -2,37 +2,23 @@
 
 use super::numerics::YieldForm;
 use super::record::Record;
+use super::sample::{self, SPACING as DP};
 use super::*;
 use crate::boundary::{GroupSpec, polyline_points};
 use crate::math::dot;
-use crate::state::{Grains, PoseTimes, Random};
+use crate::state::{Grains, Random, State};
 
-const DP: f64 = 0.01;
 const RADIUS: usize = 20;
 const HEIGHT: usize = 20;
 
 fn numerics() -> Numerics {
     Numerics {
-        spacing: DP,
-        smoothing_ratio: 1.6,
-        sound_speed: 20.0,
-        scheme: Scheme::Implicit,
-        courant: 0.5,
-        acoustic_steps: 1,
         yield_form: YieldForm::Capped,
         cap_time: 20.0,
-        density_diffusion: 0.1,
         diffusion_gate_time: 0.3,
-        strain_relaxation_time: 0.05,
-        pair_viscosity_share: 0.05,
-        artificial_viscosity: 0.0,
-        shifting: 0.0,
-        solver_tolerance: 3e-4,
         solver_max_iterations: 1000,
-        sleep: false,
-        seepage_interval: 1,
         jitter: 0.1,
-        seed: 1,
+        ..sample::numerics()
     }
 }
 
@@ -74,38 +60,13 @@ fn column(
     }
     let plan = Plan {
         numerics: numerics(),
-        gravity: [0.0, -9.81],
-        geometry: Geometry::Axisymmetric,
         lower: [0.0, -1.0],
-        upper: [1.0, 1.0],
-        periodic: Periodic {
-            lower: [0.0, -1.0],
-            length: [0.0; 2],
-        },
-        materials: vec![material],
         walls,
-        ghost_depth: Vec::new(),
-        plates: Vec::new(),
-        movers: Vec::new(),
-        sources: Vec::new(),
-        sinks: Vec::new(),
+        ..sample::plan(material, Geometry::Axisymmetric, [1.0, 1.0])
     };
     let mut state = State {
-        time: 0.0,
-        initial_mass: grains.present_mass(),
-        grains,
-        gates: Vec::new(),
-        pose: PoseTimes::default(),
-        inflows: Vec::new(),
-        drained: Vec::new(),
         impulse: vec![[0.0; 2]],
-        next_id: 0,
-        steps: 0,
-        iterations: 0,
-        step_size: 0.0,
-        trend: 0.0,
-        rest: crate::state::RestState::default(),
-        random,
+        ..sample::at_start(grains, random)
     };
     let mut solver = Solver::new(plan, 1);
     solver.start(&mut state);

@@ -1,8 +1,8 @@
-//! Bounds of the internal step, one function a bound (docs/theory.md, E13).
+//! Length of the internal step: its bounds, one function a bound (docs/theory.md, E13), and how they end at a given time.
 
 use crate::state::State;
 
-use super::{Solver, SolverError, StepBound};
+use super::{Scheme, Solver, SolverError, StepBound};
 
 /// Most that a plate moves in a step, over h [1].
 pub(super) const MOST_OF_A_PLATE: f64 = 0.1;
@@ -70,5 +70,33 @@ impl<const D: usize> Solver<D> {
             });
         }
         Ok(best)
+    }
+
+    /// The stable step, shortened so that equal steps end at `end`.
+    pub(super) fn choose_step(
+        &self,
+        state: &State<D>,
+        wanted: &[f64],
+        end: f64,
+    ) -> Result<(f64, StepBound), SolverError> {
+        let (stable, bound) = match self.numerics.scheme {
+            Scheme::Implicit => self.step_bound(state, wanted)?,
+            Scheme::PaperA(_) => self.bound_paper_a(state.time)?,
+            Scheme::PaperB(_) => self.bound_paper_b(state)?,
+        };
+        let left = end - state.time;
+        let count = (left / stable - 1e-9).ceil().max(1.0);
+        if count <= 1.0 {
+            Ok((
+                left,
+                if left < 0.999 * stable {
+                    StepBound::Communication
+                } else {
+                    bound
+                },
+            ))
+        } else {
+            Ok((left / count, bound))
+        }
     }
 }

@@ -8,230 +8,32 @@
 //! T = x - (what is beyond mu_w (p - n.tau n)),   s = (x - T)/r.                                           (W3)
 //!
 //! Material that sticks has s = 0 and does not creep; where it slides T is on the disc, against the slip. Loose material that surely slides
-//! has that T from the first (`expect_friction`) and to the last (`even_friction`).
+//! has that T from the first (`expect_friction`) and to the last (`even_friction`). What a sweep sees of faces is `wall_contact`, who
+//! holds on to them in a step `friction_row`.
 
-use std::ops::Range;
-
-use crate::math::{Tensor, Vector, add_outer, apply, dot, inverse, norm, scale, sub, trace};
+use crate::math::{Tensor, Vector, apply, dot, inverse, norm, scale, sub};
 use crate::state::State;
 
 use super::Solver;
+use super::friction_row::FrictionRow;
 use super::implicit::Viscous;
 use super::plastic::SPARE;
 use super::record::Record;
-
-/// A face with friction, as one particle sees it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Contact<const D: usize> {
-    /// The particle.
-    i: u32,
-    /// Group of the wall or gate.
-    group: u16,
-    /// Unit normal towards the material.
-    normal: Vector<D>,
-    /// Area a [m^2].
-    area: f64,
-    /// Sum of a v_w over the face's points [m^3/s].
-    drive: Vector<D>,
-}
-
-/// A particle that sees faces with friction.
-#[derive(Clone, Debug)]
-pub(super) struct FrictionRow<const D: usize> {
-    i: usize,
-    /// Its contacts, of [`Friction::contacts`].
-    range: Range<usize>,
-    /// Sum of a P over the contacts [m^2].
-    grip: Tensor<D>,
-    /// Sum of a P v_w over the contacts [m^3/s].
-    drive: Vector<D>,
-    /// Turns a force along the faces into the traction that makes it; only this little of it across them.
-    spread: Tensor<D>,
-    /// Penalty r [Pa s/m].
-    penalty: f64,
-    /// mu_w p [Pa].
-    bears: f64,
-    /// Whether it is loose and slides, faster than friction could stop it in the step. What holds together loosens from no wall, and the
-    /// stress of a plug, which its friction follows, is known after the solve alone.
-    slides: bool,
-}
+use super::wall_contact::Contact;
 
 /// Who sees walls with friction; empty in scenes without.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Friction<const D: usize> {
-    contacts: Vec<Contact<D>>,
+    /// Row after row.
+    pub(super) contacts: Vec<Contact<D>>,
     /// In ascending order of particles.
-    rows: Vec<FrictionRow<D>>,
-}
-
-/// Share of a face's area that `spread` gives the direction across all faces, where it has none.
-const ACROSS: f64 = 1e-2;
-
-/// Slip over what full friction would take of it in one step, above which it is sure to slide on [1].
-const SURELY: f64 = 2.0;
-
-/// What a particle sees of walls, as far as it tells whether that is one flat face with friction.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Face<const D: usize> {
-    /// Nothing yet.
-    None,
-    /// Points with friction and this normal only.
-    Flat(Vector<D>),
-    /// Something else, too.
-    Other,
-}
-
-impl<const D: usize> Face<D> {
-    /// With one more point; `normal` if it has friction.
-    pub(super) fn with(self, normal: Option<Vector<D>>) -> Self {
-        match (self, normal) {
-            (Face::None, Some(n)) => Face::Flat(n),
-            (Face::Flat(m), Some(n)) if same_normal(&m, &n) => self,
-            _ => Face::Other,
-        }
-    }
-}
-
-fn same_normal<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> bool {
-    dot(a, b) > 1.0 - 1e-9
-}
-
-impl<const D: usize> Contact<D> {
-    /// Adds a face that particle i sees to the contacts of its row, which begin at `first`: area [m^2], and sum of area v_w
-    /// over its points [m^3/s].
-    pub(super) fn gather(
-        contacts: &mut Vec<Self>,
-        first: usize,
-        (i, group): (usize, u16),
-        normal: &Vector<D>,
-        area: f64,
-        drive: &Vector<D>,
-    ) {
-        let same = |c: &&mut Self| c.group == group && same_normal(&c.normal, normal);
-        if let Some(contact) = contacts[first..].iter_mut().find(same) {
-            contact.area += area;
-            for k in 0..D {
-                contact.drive[k] += drive[k];
-            }
-        } else {
-            contacts.push(Self {
-                i: i as u32,
-                group,
-                normal: *normal,
-                area,
-                drive: *drive,
-            });
-        }
-    }
-
-    /// P a.
-    fn along(&self, a: &Vector<D>) -> Vector<D> {
-        sub(a, &scale(dot(a, &self.normal), &self.normal))
-    }
+    pub(super) rows: Vec<FrictionRow<D>>,
 }
 
 /// mu_w p over the traction of a face along which a particle slides by so small a share of its slip [1].
 const STEEP: f64 = 10.0;
 
 impl<const D: usize> Solver<D> {
-    /// Makes the friction rows of a step from the contacts of the last sweep.
-    pub(super) fn find_friction(&mut self, state: &mut State<D>, dt: f64) {
-        if !state.grains.wall_friction {
-            return;
-        }
-        let Friction {
-            mut contacts,
-            mut rows,
-        } = std::mem::take(&mut self.friction);
-        contacts.clear();
-        rows.clear();
-        let seen = self.lists.blocks.iter().flat_map(|b| &b.contacts);
-        contacts.extend(seen.filter(|c| c.area > 0.0));
-        let mut first = 0;
-        for seen in contacts.chunk_by(|a, b| a.i == b.i) {
-            let range = first..first + seen.len();
-            first = range.end;
-            let i = seen[0].i as usize;
-            let stopping = dt / state.grains.mass[i];
-            rows.push(self.friction_row(state, i, range, seen, stopping));
-        }
-        self.friction = Friction { contacts, rows };
-        // What has left the walls takes no traction with it.
-        let grains = &mut state.grains;
-        let mut next = 0;
-        let ends = self.friction.rows.iter().map(|r| r.i);
-        for end in ends.chain([grains.len()]) {
-            grains.wall_traction[next..end].fill([0.0; D]);
-            grains.wall_slip[next..end].fill([0.0; D]);
-            next = end + 1;
-        }
-    }
-
-    /// Sums over the contacts of particle i, and its penalty; `stopping` is dt/m [s/kg].
-    fn friction_row(
-        &self,
-        state: &State<D>,
-        i: usize,
-        range: Range<usize>,
-        contacts: &[Contact<D>],
-        stopping: f64,
-    ) -> FrictionRow<D> {
-        let mut row = FrictionRow {
-            i,
-            range,
-            grip: [[0.0; D]; D],
-            drive: [0.0; D],
-            spread: [[0.0; D]; D],
-            penalty: 0.0,
-            bears: 0.0,
-            slides: false,
-        };
-        let mut normal = [0.0; D];
-        let (mut area, mut friction) = (0.0, 0.0);
-        for c in contacts {
-            let drive = c.along(&c.drive);
-            for k in 0..D {
-                row.grip[k][k] += c.area;
-                row.drive[k] += drive[k];
-                normal[k] += c.area * c.normal[k];
-            }
-            add_outer(&mut row.grip, -c.area, &c.normal, &c.normal);
-            area += c.area;
-            friction += c.area * self.walls.groups[c.group as usize].friction;
-        }
-        friction /= area;
-        let mut full = row.grip;
-        let size = norm(&normal);
-        // Faces opposite each other, as near: across either.
-        let across = if size > 0.0 {
-            scale(1.0 / size, &normal)
-        } else {
-            contacts.first().map_or([0.0; D], |c| c.normal)
-        };
-        // A flat face has no area across itself, and a bend little: there it takes no part.
-        let least = dot(&across, &apply(&full, &across));
-        add_outer(
-            &mut full,
-            (ACROSS * trace(&row.grip)).max(least) - least,
-            &across,
-            &across,
-        );
-        row.spread = inverse(&full);
-        let slip = norm(&row.slip(&state.grains.velocity[i]));
-        let pressure = self.pressure_on_walls(row.i).max(0.0);
-        let stick = friction.min(1.0) * self.numerics.cap_time / (0.5 * self.numerics.spacing);
-        row.bears = friction * pressure;
-        // Friction takes some steps to come, so that what comes to rest does not turn round; but is all there in the first of
-        // what slides and cannot come to rest in it.
-        let slides = slip > SURELY * stopping * row.bears * trace(&row.grip);
-        let begins = norm(&state.grains.wall_traction[i]) < 0.5 * row.bears;
-        let holds = self.materials[state.grains.phase[i] as usize].cohesion > 0.0;
-        row.slides = slides && !holds;
-        let share = if slides && holds && begins { 1.0 } else { 0.1 };
-        row.penalty = pressure * stick.min(share * friction / slip.max(f64::MIN_POSITIVE));
-        row
-    }
-
     /// Cuts the slip s that a step starts from where r s is more than the faces bear: at most a fifth of that is usual.
     ///
     /// Where a gate or a wall has stopped, r has grown with the slip gone, and r s of the old slip is out of all bounds.
@@ -395,12 +197,6 @@ impl<const D: usize> Solver<D> {
         apply(&row.spread, &beyond)
     }
 
-    /// p between grains and walls that momentum feels over the step [Pa].
-    fn pressure_on_walls(&self, i: usize) -> f64 {
-        let mean = self.acoustic.pressure.get(i);
-        mean.map_or_else(|| self.effective_pressure()[i], |p| *p)
-    }
-
     /// mu_w (p - n.tau n) >= 0 of a contact [Pa].
     fn friction_limit(&self, c: &Contact<D>, tau: &Tensor<D>) -> f64 {
         let pull = dot(&c.normal, &apply(tau, &c.normal));
@@ -426,13 +222,5 @@ impl<const D: usize> Solver<D> {
                 }
             }
         }
-    }
-}
-
-impl<const D: usize> FrictionRow<D> {
-    /// Slip velocity along the faces at velocity v [m/s].
-    fn slip(&self, v: &Vector<D>) -> Vector<D> {
-        let gripped = sub(&apply(&self.grip, v), &self.drive);
-        apply(&self.spread, &gripped)
     }
 }

@@ -12,7 +12,7 @@ use super::Solver;
 use super::barrier::{Nearness, Rub};
 use super::fluid_row::Row;
 use super::pair::WallRow;
-use super::wall_friction::{Contact, Face};
+use super::wall_contact::{Contact, Face};
 
 /// Distance to the nearest wall point from which on (W5) cannot act, over the spacing [1]: on the surface it is 0.87 at most, and
 /// even a point missing inside a wall has its neighbours nearer.

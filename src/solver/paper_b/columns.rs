@@ -11,10 +11,8 @@ use crate::math::{Vector, dot};
 use crate::solver::Solver;
 use crate::state::State;
 
+use super::ALONE;
 use super::sums::Sums;
-
-/// Smallest eigenvalue below which a particle is spray ([B] after eq. 19) [1].
-const ALONE: f64 = 0.2;
 
 /// Place of a column across gravity, and its phase.
 type Column<const D: usize> = ([i64; D], u8);

@@ -7,13 +7,12 @@ use crate::math::{CHUNK, Vector, add, apply, dot, norm, scale, sub};
 use crate::solver::Solver;
 use crate::state::State;
 
-use super::PaperB;
 use super::response::Response;
 use super::sums::{Near, Sums};
 use super::walls::Seen;
+use super::{ALONE, PaperB};
 
-/// Smallest eigenvalue of what is left alone, and of what is at a surface ([B] after eq. 19) [1].
-const ALONE: f64 = 0.2;
+/// Smallest eigenvalue below which a particle is at a surface ([B] after eq. 19) [1].
 const AT_SURFACE: f64 = 0.7;
 
 /// Sums and responses of the particles, pressures of the elements.

@@ -25,6 +25,9 @@ use forces::Forces;
 use response::Response;
 use sums::Sums;
 
+/// Smallest eigenvalue below which a particle is spray: it is not shifted and no column's top ([B] after eq. 19) [1].
+const ALONE: f64 = 0.2;
+
 /// What only this scheme needs to know.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperB {

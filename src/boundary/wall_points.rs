@@ -1,0 +1,126 @@
+//! The points of all walls and gates, and what those of one wall share. Where they lie is for `points` to say.
+
+use std::collections::HashMap;
+
+use super::ends::End;
+use crate::math::{Vector, norm, sub};
+
+/// What all points of one wall or gate share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroupSpec {
+    /// Free slip: only the normal part of motion is seen.
+    pub free_slip: bool,
+    /// Coulomb friction mu_w >= 0 of a face with free slip, 0: none [1].
+    pub friction: f64,
+    /// Whether its points move against the material, gates apart: then sliding along it counts as motion, too.
+    pub moves: bool,
+    /// Whether somebody reads the force on it.
+    pub wants_force: bool,
+}
+
+/// All wall points: fixed walls first, then gates.
+#[derive(Clone, Debug, Default)]
+pub struct WallPoints<const D: usize> {
+    /// Position [m].
+    pub position: Vec<Vector<D>>,
+    /// Velocity [m/s].
+    pub velocity: Vec<Vector<D>>,
+    /// Unit normal towards the material (free slip only needs it).
+    pub normal: Vec<Vector<D>>,
+    /// Share of a full point, 0 to 1 (spacing differs from dp, or the plate's end is half hidden).
+    pub weight: Vec<f64>,
+    /// Index into `groups`.
+    pub group: Vec<u16>,
+    /// One per wall, then one per gate.
+    pub groups: Vec<GroupSpec>,
+    /// Faces at free ends of walls.
+    pub ends: Vec<End<D>>,
+    /// The end that each point belongs to, counted from 1, 0: none; shorter than the points or empty where there are none.
+    pub end: Vec<u16>,
+}
+
+impl<const D: usize> WallPoints<D> {
+    /// Adds a point.
+    pub fn push(
+        &mut self,
+        position: Vector<D>,
+        velocity: Vector<D>,
+        normal: Vector<D>,
+        weight: f64,
+        group: u16,
+    ) {
+        self.position.push(position);
+        self.velocity.push(velocity);
+        self.normal.push(normal);
+        self.weight.push(weight);
+        self.group.push(group);
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// Keeps the points whose position satisfies `wanted`.
+    pub fn retain(&mut self, wanted: impl Fn(&Vector<D>) -> bool) {
+        let keep: Vec<usize> = (0..self.len())
+            .filter(|&i| wanted(&self.position[i]))
+            .collect();
+        self.pick(&keep);
+    }
+
+    fn pick(&mut self, keep: &[usize]) {
+        fn pick<T: Copy>(field: &mut Vec<T>, keep: &[usize]) {
+            *field = keep.iter().map(|&i| field[i]).collect();
+        }
+        let count = self.len();
+        pick(&mut self.position, keep);
+        pick(&mut self.velocity, keep);
+        pick(&mut self.normal, keep);
+        pick(&mut self.weight, keep);
+        pick(&mut self.group, keep);
+        if !self.ends.is_empty() {
+            self.end.resize(count, 0);
+            pick(&mut self.end, keep);
+        }
+    }
+
+    /// Drops points closer than half a spacing to an earlier one (walls that overlap at corners). `together`: whether two groups
+    /// stay where they are to each other; what would part keeps all of its points.
+    pub fn drop_doubles(&mut self, spacing: f64, together: impl Fn(u16, u16) -> bool) {
+        let reach = 0.5 * spacing;
+        let cell =
+            |x: &Vector<D>| -> [i64; D] { std::array::from_fn(|k| (x[k] / reach).floor() as i64) };
+        let mut seen: HashMap<[i64; D], Vec<usize>> = HashMap::new();
+        let mut keep = Vec::new();
+        for i in 0..self.len() {
+            let here = cell(&self.position[i]);
+            let near = (0..3usize.pow(D as u32)).any(|n| {
+                let mut m = n;
+                let c = std::array::from_fn(|k| {
+                    let o = (m % 3) as i64 - 1;
+                    m /= 3;
+                    here[k] + o
+                });
+                seen.get(&c).is_some_and(|v| {
+                    v.iter().any(|&j| {
+                        norm(&sub(&self.position[i], &self.position[j])) < reach
+                            && together(self.group[i], self.group[j])
+                    })
+                })
+            });
+            if !near {
+                seen.entry(here).or_default().push(i);
+                keep.push(i);
+            }
+        }
+        self.pick(&keep);
+    }
+}

@@ -1,0 +1,176 @@
+//! How a solver begins: made for a plan, started on a fresh state, resumed on a restored one.
+
+use std::sync::Arc;
+
+use crate::kernel::WendlandC2;
+use crate::material::Material;
+use crate::math::{Arch, Workers, norm};
+use crate::state::State;
+
+use super::acoustic::Acoustic;
+use super::barrier::Barrier;
+use super::implicit::Viscous;
+use super::lists::Lists;
+use super::packing::Packing;
+use super::wall_friction::Friction;
+use super::{Plan, Scheme, Solver, explicit, paper_a, paper_b, pore, rest, texture};
+
+/// Skin of the neighbour lists over h [1].
+const SKIN: f64 = 0.3;
+
+impl<const D: usize> Solver<D> {
+    /// A solver for a plan, on `threads` threads (0: all cores).
+    #[must_use]
+    pub fn new(plan: Plan<D>, threads: usize) -> Self {
+        let Plan {
+            numerics,
+            gravity,
+            geometry,
+            lower,
+            upper,
+            periodic,
+            materials,
+            mut walls,
+            ghost_depth,
+            movers,
+            mut plates,
+            sources,
+            sinks,
+        } = plan;
+        let spacing = numerics.spacing;
+        let h = spacing * numerics.smoothing_ratio;
+        let kernel = WendlandC2::new(h);
+        let barrier = Barrier::new(numerics.spacing, numerics.longest_step());
+        let fixed_groups = walls.groups.len() - plates.len();
+        for mover in &movers {
+            mover.place(&mut walls, 0.0);
+        }
+        let has_bulk_friction = materials.iter().any(|m| m.bulk_friction > 0.0);
+        let has_pores = materials.iter().any(Material::is_saturated);
+        let rubs = walls.groups.iter().any(|g| g.friction > 0.0);
+        let has_fluids = materials.iter().any(Material::is_fluid);
+        let has_meetings = numerics.scheme == Scheme::Implicit && has_fluids && materials.len() > 1;
+        let has_effective_pressure = has_pores || (rubs && has_fluids);
+        let lattice_sum = if has_pores || has_fluids {
+            pore::lattice_sum(&kernel, spacing)
+        } else {
+            0.0
+        };
+        let rate = explicit::rate::<D>(lattice_sum);
+        let slides = texture::who_slides(&numerics, geometry, &materials, rate);
+        let stays_awake = rest::stays_awake(&numerics, &gravity, &walls, &materials);
+        for plate in &mut plates {
+            plate.append(&mut walls);
+        }
+        Self {
+            lists: Lists::new(kernel.support(), SKIN * h),
+            gravity_norm: norm(&gravity),
+            numerics,
+            gravity,
+            geometry,
+            width: geometry.width(),
+            lower,
+            upper,
+            periodic,
+            materials,
+            kernel,
+            barrier,
+            walls,
+            ghost_depth,
+            fixed_groups,
+            movers,
+            plates,
+            sources,
+            sinks,
+            workers: Arc::new(Workers::new(threads)),
+            arch: Arch::detect(),
+            stays_awake,
+            has_bulk_friction,
+            has_fluids,
+            has_meetings,
+            has_pores,
+            has_effective_pressure,
+            records: Vec::new(),
+            kinematics: Vec::new(),
+            volume: Vec::new(),
+            rings: Vec::new(),
+            responses: Vec::new(),
+            pressure: Vec::new(),
+            loads: Vec::new(),
+            normal_pressure: Vec::new(),
+            effective: Vec::new(),
+            pore: pore::Work::default(),
+            lattice_sum,
+            packing: Packing::new(&kernel, spacing),
+            flows: Vec::new(),
+            lean: Vec::new(),
+            wall_share: Vec::new(),
+            lone: Vec::new(),
+            slides,
+            texture: Vec::new(),
+            uneven_pressure: Vec::new(),
+            mirrors: Vec::new(),
+            openness: Vec::new(),
+            shift: Vec::new(),
+            shift_divergence: Vec::new(),
+            viscosity: Vec::new(),
+            pair_viscosity: Vec::new(),
+            inertial_number: Vec::new(),
+            prediction: Vec::new(),
+            acoustic: Acoustic::default(),
+            viscous: Viscous::default(),
+            friction: Friction::default(),
+            paper_a: paper_a::Work::default(),
+            paper_b: paper_b::Work::default(),
+            before: Vec::new(),
+        }
+    }
+
+    /// Uses another number of threads (0: all cores); results do not change.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.workers = Arc::new(Workers::new(threads));
+    }
+
+    /// Sorts a fresh state's particles and derives everything else from it.
+    pub fn start(&mut self, state: &mut State<D>) {
+        self.renew_lists(state);
+        self.pack(state);
+        if self.has_pores && self.numerics.scheme == Scheme::Implicit {
+            self.sweep_kinematics(state);
+            self.seep(state);
+        }
+        self.derive(state);
+    }
+
+    /// Derives lists, walls, pressures and viscosities of a restored state, with the bits they had.
+    pub fn resume(&mut self, state: &State<D>) {
+        // Lists were built with plates and movers where they were then.
+        self.place_movers(state.pose.listed);
+        for (plate, gate) in self.plates.iter().zip(&state.gates) {
+            plate.place(&mut self.walls, gate.listed_opening, 0.0);
+        }
+        self.lists.build(
+            &state.grains,
+            &self.walls,
+            &self.periodic,
+            (&self.workers, self.arch),
+        );
+        self.place_movers(state.pose.now);
+        for (plate, gate) in self.plates.iter().zip(&state.gates) {
+            plate.place(&mut self.walls, gate.opening, gate.rate);
+        }
+        self.derive(state);
+    }
+
+    /// Everything that follows from a state.
+    pub(super) fn derive(&mut self, state: &State<D>) {
+        match self.numerics.scheme {
+            Scheme::Implicit => {
+                self.sweep_kinematics(state);
+                self.respond(state);
+            }
+            Scheme::PaperA(choices) => self.derive_paper_a(&choices, state),
+            Scheme::PaperB(choices) => self.derive_paper_b(&choices, state),
+        }
+    }
+}
