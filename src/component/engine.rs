@@ -6,7 +6,10 @@
 
 use super::{MassLedger, ParticleView, Statistics, Totals};
 use crate::gauge::Reading;
-use crate::solver::{StaysAwake, StepBound};
+use crate::solver::{StaysAwake, StepBound, SubStep};
+
+/// Steps that differ by less are the same [1].
+const SAME_STEP: f64 = 1e-9;
 
 /// An input over one communication step: `value + slope (t - t0)`, t0 being the start of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -36,9 +39,9 @@ pub(crate) struct Inputs {
 /// What one call of [`Engine::advance`] did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Advance {
-    /// Internal steps taken.
+    /// Internal steps taken, none while the scene sleeps.
     pub(crate) substeps: u64,
-    /// Smallest internal step [s].
+    /// Smallest internal step; of a scene that sleeps throughout, the time slept [s].
     pub(crate) smallest_step: f64,
     /// What bound that one.
     pub(crate) bound_by: StepBound,
@@ -54,6 +57,26 @@ impl Advance {
             smallest_step: f64::INFINITY,
             bound_by: StepBound::Communication,
             iterations: 0,
+        }
+    }
+
+    /// Adds an internal step, or a sleep.
+    pub(crate) fn add(&mut self, done: &SubStep) {
+        let first = self.substeps == 0;
+        if done.bound == StepBound::Asleep {
+            if first {
+                (self.smallest_step, self.bound_by) = (done.dt, done.bound);
+            }
+            return;
+        }
+        self.substeps += 1;
+        self.iterations += u64::from(done.iterations);
+        // Equal steps differ by rounding, and the last of them ends with the communication step without being bound by it.
+        if first || done.dt < (1.0 - SAME_STEP) * self.smallest_step {
+            if first || done.bound != StepBound::Communication {
+                self.bound_by = done.bound;
+            }
+            self.smallest_step = done.dt;
         }
     }
 }

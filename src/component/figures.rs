@@ -36,6 +36,7 @@ pub(super) fn statistics<const D: usize>(state: &State<D>, solver: &Solver<D>) -
         step_size: state.step_size,
         kinetic_energy: energy,
         max_speed: fastest,
+        share_asleep: f64::from(u8::from(state.rest.asleep)),
         share_dilute: validity.share_dilute,
         share_ill_posed: validity.share_ill_posed,
         creep_rate: validity.creep_rate,

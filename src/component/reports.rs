@@ -9,9 +9,9 @@ pub struct StepReport {
     pub time: f64,
     /// Whether a watcher ended the step before t + h.
     pub ended_early: bool,
-    /// Internal steps taken.
+    /// Internal steps taken, none while the scene sleeps.
     pub substeps: u64,
-    /// Smallest internal step [s].
+    /// Smallest internal step; of a scene that sleeps throughout, the time slept [s].
     pub smallest_step: f64,
     /// What bound it.
     pub bound_by: StepBound,
@@ -59,6 +59,8 @@ pub struct Statistics {
     pub kinetic_energy: f64,
     /// Largest particle speed [m/s].
     pub max_speed: f64,
+    /// Share of the particles that sleep, all of them or none [1]: where nothing moves nothing is computed.
+    pub share_asleep: f64,
     /// Share of mass with I > 0.3 [1]: outside the dense regime.
     pub share_dilute: f64,
     /// Share of mass that yields where its friction law is ill-posed [1].

@@ -133,12 +133,7 @@ impl<const D: usize> Simulation<D> {
                 }
             },
         )?;
-        report.substeps += 1;
-        report.iterations += u64::from(done.iterations);
-        if done.dt < report.smallest_step {
-            report.smallest_step = done.dt;
-            report.bound_by = done.bound;
-        }
+        report.add(&done);
         // The last of equal steps ends at the end; rounding does not add another.
         if end - self.state.time < 1e-9 * done.dt {
             self.state.time = end;

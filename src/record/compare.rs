@@ -55,6 +55,7 @@ pub(super) fn different_figure(logged: &StepStats, own: &StepStats) -> Option<(S
             ("stats.kinetic_energy", s.kinetic_energy),
             ("stats.max_speed", s.max_speed),
             ("stats.share_dilute", s.share_dilute),
+            ("stats.share_asleep", s.share_asleep),
             ("stats.total_substeps", s.total_substeps as f64),
             ("stats.total_iterations", s.total_iterations as f64),
             ("mass.initial", l.initial),

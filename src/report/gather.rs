@@ -306,6 +306,7 @@ impl Gathered {
         add("kinetic_energy", &|s| s.kinetic_energy);
         add("max_speed", &|s| s.max_speed);
         add("share_dilute", &|s| s.share_dilute);
+        add("share_asleep", &|s| s.share_asleep);
         add("total_substeps", &|s| s.total_substeps as f64);
         add("initial", &|s| ledger(s).initial);
         add("inflow", &|s| ledger(s).inflow);

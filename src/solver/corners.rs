@@ -5,13 +5,12 @@
 //! the dual vectors m of the normals: m_A.n_A = 1, m_A.n_B = 0. Counted to one wall alone, the other's thrust lacks 0.3 dp of the
 //! pressure at its foot.
 //!
-//! Pressure pushes the points in front of a corner along their own face, too, away from it: with what lies behind the corner it adds up to nothing. Of grains
-//! that part goes to the wall that it points at, so that along itself a wall bears friction alone; beside it the thrust of grains keeps the lack of 0.3 dp.
-//! Of fluids it stays, and thrusts are exact.
+//! Fluids only. Pressure also pushes points beside a corner along their own face, away from it, and with what lies behind the corner that adds up to
+//! nothing; without that a face would bear along itself what is not friction. Fluids have none, and (W7) carries their weight.
 //!
 //! Symbols: n unit normals towards the material, dp spacing.
 
-use crate::math::{Vector, add, dot, norm, scale, sub};
+use crate::math::{Vector, dot, norm, scale, sub};
 
 /// Largest |n_A.n_B| of faces that make a corner [1]: beyond it they go on from each other.
 const PARALLEL: f64 = 0.9;
@@ -24,17 +23,8 @@ pub(super) struct Push<const D: usize> {
     pub normal: Vector<D>,
     /// From the particle to the point [m].
     pub to: Vector<D>,
-    /// On the particle, by the point: of pressure [N s].
-    pub pressure: Vector<D>,
-    /// Of all else [N s].
-    pub rest: Vector<D>,
-}
-
-impl<const D: usize> Push<D> {
     /// On the particle, by the point [N s].
-    pub(super) fn impulse(&self) -> Vector<D> {
-        add(&self.pressure, &self.rest)
-    }
+    pub impulse: Vector<D>,
 }
 
 /// A face as one particle sees it.
@@ -49,20 +39,10 @@ impl<const D: usize> Face<D> {
     fn has(&self, push: &Push<D>) -> bool {
         self.group == push.group && self.normal == push.normal
     }
-
-    /// Whether a point lies behind it.
-    fn hides(&self, push: &Push<D>, spacing: f64) -> bool {
-        dot(&self.normal, &push.to) < self.row + 0.5 * spacing
-    }
 }
 
-/// Hands on what points behind two faces bear to the walls that it belongs to, of `grains` what points beside a corner bear along their face, too.
-/// What one particle pushes stays the same in sum.
-pub(super) fn part_at_corners<const D: usize>(
-    pushes: &mut Vec<Push<D>>,
-    grains: bool,
-    spacing: f64,
-) {
+/// Hands on what points behind two faces bear to the walls that it belongs to. What one particle pushes stays the same in sum.
+pub(super) fn part_at_corners<const D: usize>(pushes: &mut Vec<Push<D>>, spacing: f64) {
     let Some(first) = pushes.first() else {
         return;
     };
@@ -78,7 +58,8 @@ pub(super) fn part_at_corners<const D: usize>(
         };
         let mut met: Vec<(f64, &Face<D>)> = Vec::with_capacity(D);
         for (share, face) in shares[own].iter().zip(&faces) {
-            if *share > 0.0 && (grains || face.hides(&push, spacing)) {
+            let behind = dot(&face.normal, &push.to) < face.row + 0.5 * spacing;
+            if *share > 0.0 && behind {
                 keep_best(&mut met, (*share, face));
             }
         }
@@ -88,21 +69,13 @@ pub(super) fn part_at_corners<const D: usize>(
             let Some(dual) = dual(&face.normal, others) else {
                 continue;
             };
-            let part = |of: &Vector<D>| scale(share * dot(&dual, of), &face.normal);
-            let rest = if face.hides(&push, spacing) {
-                part(&push.rest)
-            } else {
-                [0.0; D]
-            };
-            let handed = Push {
+            let impulse = scale(share * dot(&dual, &push.impulse), &face.normal);
+            pushes[n].impulse = sub(&pushes[n].impulse, &impulse);
+            pushes.push(Push {
                 group: face.group,
-                pressure: part(&push.pressure),
-                rest,
+                impulse,
                 ..push
-            };
-            pushes[n].pressure = sub(&pushes[n].pressure, &handed.pressure);
-            pushes[n].rest = sub(&pushes[n].rest, &handed.rest);
-            pushes.push(handed);
+            });
         }
     }
 }
@@ -173,6 +146,7 @@ fn dual<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::add;
 
     const DP: f64 = 0.1;
 
@@ -183,13 +157,12 @@ mod tests {
     ) -> Vec<Push<D>> {
         let push = |(group, normal, point)| {
             let to = sub(&point, &x);
-            let pressure = scale(-1.0 / dot(&to, &to), &to);
+            let impulse = scale(-1.0 / dot(&to, &to), &to);
             Push {
                 group,
                 normal,
                 to,
-                pressure,
-                rest: [0.0; D],
+                impulse,
             }
         };
         points.map(push).collect()
@@ -197,7 +170,7 @@ mod tests {
 
     fn sum<const D: usize>(pushes: &[Push<D>], of: impl Fn(u16) -> bool) -> Vector<D> {
         let own = pushes.iter().filter(|p| of(p.group));
-        own.fold([0.0; D], |sum, p| add(&sum, &p.impulse()))
+        own.fold([0.0; D], |sum, p| add(&sum, &p.impulse))
     }
 
     /// A gate (1) `lift` rows above a floor (0) that goes on under it.
@@ -216,9 +189,9 @@ mod tests {
         let x = [0.5 * DP, 0.5 * DP];
         let before = pushes(x, sluice(0.0));
         let mut after = before.clone();
-        part_at_corners(&mut after, false, DP);
+        part_at_corners(&mut after, DP);
         let under = before.iter().filter(|p| p.group == 0 && p.to[0] < -x[0]);
-        let handed = under.fold(0.0, |sum, p| sum + p.pressure[0]);
+        let handed = under.fold(0.0, |sum, p| sum + p.impulse[0]);
         let gate = sum(&after, |g| g == 1);
         assert!((gate[0] - sum(&before, |g| g == 1)[0] - handed).abs() < 1e-9 * handed);
         assert!(handed > 1.0, "{handed}");
@@ -229,21 +202,10 @@ mod tests {
     }
 
     #[test]
-    fn grains_push_each_wall_along_its_normal_alone() {
-        let mut pushes = pushes([0.5 * DP, 0.5 * DP], sluice(0.0));
-        let whole = sum(&pushes, |_| true);
-        part_at_corners(&mut pushes, true, DP);
-        let (floor, gate) = (sum(&pushes, |g| g == 0), sum(&pushes, |g| g == 1));
-        let size = norm(&whole);
-        assert!((gate[0] - whole[0]).abs() < 1e-12 * size && gate[1].abs() < 1e-12 * size);
-        assert!((floor[1] - whole[1]).abs() < 1e-12 * size && floor[0].abs() < 1e-12 * size);
-    }
-
-    #[test]
     fn a_gate_that_is_lifted_by_a_row_has_no_corner() {
         let at = |lift| {
             let mut pushes = pushes([0.5 * DP, 0.5 * DP], sluice(lift));
-            part_at_corners(&mut pushes, false, DP);
+            part_at_corners(&mut pushes, DP);
             sum(&pushes, |g| g == 0)[0]
         };
         let alone = sum(&pushes([0.5 * DP, 0.5 * DP], sluice(1.0)), |g| g == 0)[0];
@@ -274,7 +236,7 @@ mod tests {
         });
         let before = pushes([0.02, 0.05], floors);
         let mut after = before.clone();
-        part_at_corners(&mut after, false, DP);
+        part_at_corners(&mut after, DP);
         assert_eq!(after.len(), before.len());
     }
 }

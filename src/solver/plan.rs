@@ -73,6 +73,8 @@ pub enum StepBound {
     Viscous,
     /// The end of the communication step.
     Communication,
+    /// Nothing: the scene sleeps, and no step was computed.
+    Asleep,
 }
 
 impl StepBound {
@@ -84,6 +86,7 @@ impl StepBound {
             StepBound::Motion => "motion",
             StepBound::Viscous => "viscous",
             StepBound::Communication => "communication",
+            StepBound::Asleep => "asleep",
         }
     }
 }

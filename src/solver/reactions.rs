@@ -27,8 +27,8 @@ impl<const D: usize> Solver<D> {
         if !read.contains(&true) {
             return;
         }
-        // What the solve has left, so that walls give all that the material gets.
-        let left = self.momentum_left(state);
+        // What the solve has left, so that walls give all that the material gets: m (v* - v) + what walls gave in it.
+        let mut left = self.momentum_of_solve(state);
         let mut borne = vec![[0.0; D]; read.len()];
         let mut pushes = Vec::new();
         for (b, block) in self.lists.blocks.iter().enumerate() {
@@ -41,14 +41,22 @@ impl<const D: usize> Solver<D> {
                 }
                 pushes.clear();
                 let pushing = self.pushing(state, (b * CHUNK + row, seen), dt);
-                self.push_points(state, &pushing, near, &mut pushes);
-                let grains = !self.material_of(state, b * CHUNK + row).is_fluid();
-                part_at_corners(&mut pushes, grains, self.numerics.spacing);
+                let in_solve = self.push_points(state, &pushing, near, &mut pushes);
+                left = add(&left, &in_solve);
+                if self.material_of(state, b * CHUNK + row).is_fluid() {
+                    part_at_corners(&mut pushes, self.numerics.spacing);
+                }
                 for push in &pushes {
                     let borne = &mut borne[push.group as usize];
-                    *borne = add(borne, &push.impulse());
+                    *borne = add(borne, &push.impulse);
                 }
             }
+        }
+        let rubbed = self.add_friction_reactions(state, dt, &read);
+        left = sub(&left, &rubbed);
+        if self.geometry.is_axisymmetric() {
+            // Rings keep momentum along their axis only.
+            left[0] = 0.0;
         }
         let total = borne.iter().fold(0.0, |sum, b| sum + norm(b));
         for (n, borne) in borne.iter().enumerate().filter(|(n, _)| read[*n]) {
@@ -61,25 +69,16 @@ impl<const D: usize> Solver<D> {
                 state.impulse[n][k] -= borne[k] - share * left[k];
             }
         }
-        self.add_friction_reactions(state, dt, all);
     }
 
-    /// Momentum that the viscous solve has left in what touches walls [N s]: (E9) holds to its tolerance. What touches none has it back
-    /// already ([`Solver::restore_momentum`]).
-    fn momentum_left(&self, state: &State<D>) -> Vector<D> {
+    /// What the viscous solve has taken from the momentum of all that touches walls [N s]. (E9) holds to its tolerance, and what touches no
+    /// wall has the rest back already ([`Solver::restore_momentum`]).
+    fn momentum_of_solve(&self, state: &State<D>) -> Vector<D> {
         let mut sum = [0.0; D];
-        let residual = &self.viscous.residual;
-        if residual.len() != state.grains.len() {
-            return sum;
-        }
-        // Rings keep momentum along their axis only.
-        let first = usize::from(self.geometry.is_axisymmetric());
-        for (r, piece) in residual.iter().zip(&self.lists.pieces) {
-            if piece.is_none() {
-                for k in first..D {
-                    sum[k] += r[k];
-                }
-            }
+        let touching = self.lists.pieces.iter().enumerate();
+        for (i, _) in touching.filter(|(_, piece)| piece.is_none()) {
+            let change = sub(&self.prediction[i].velocity, &self.viscous.velocity[i]);
+            sum = add(&sum, &scale(state.grains.mass[i], &change));
         }
         sum
     }
@@ -106,36 +105,39 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Adds what a particle hands to each of the points `near` it, as it feels it.
+    /// Adds what a particle hands to each of the points `near` it, as it feels it; returns how much of it the solve has found.
     fn push_points(
         &self,
         state: &State<D>,
         pushing: &Pushing<D>,
         near: &[u32],
         pushes: &mut Vec<Push<D>>,
-    ) {
+    ) -> Vector<D> {
         let i = pushing.i;
         let xi = &state.grains.position[i];
         let support = self.kernel.support();
         let by_stress = pushing.dt * self.width * self.volume[i];
+        let mut in_solve = [0.0; D];
         for &w in near {
             let (x, r) = self.wall_offset(xi, w);
             if self.walls.weight[w as usize] == 0.0 || r >= support || r == 0.0 {
                 continue;
             }
-            let (pressure, shear) = self.stress_push(state, pushing, w, (&x, r));
-            let other = self.other_push(state, pushing, w, (&x, r));
+            let (pressure, stress) = self.stress_push(state, pushing, w, (&x, r));
+            let (leant, other) = self.other_push(state, pushing, w, (&x, r));
+            let solved = add(&scale(by_stress, &stress), &leant);
+            in_solve = add(&in_solve, &solved);
             pushes.push(Push {
                 group: self.walls.group[w as usize],
                 normal: self.wall_normal(xi, w, state),
                 to: scale(-1.0, &x),
-                pressure: scale(by_stress, &pressure),
-                rest: add(&scale(by_stress, &shear), &other),
+                impulse: add(&add(&scale(by_stress, &pressure), &other), &solved),
             });
         }
+        in_solve
     }
 
-    /// Of pressure, -2 p g, and of shear stress, 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w), on the particle and over its volume.
+    /// On the particle, over its volume: of pressure, -2 p g, and of stress, 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w).
     fn stress_push(
         &self,
         state: &State<D>,
@@ -155,26 +157,26 @@ impl<const D: usize> Solver<D> {
         if let Some(uneven) = self.uneven_pressure.get(i) {
             pressure = add(&pressure, &scale(2.0, &apply(uneven, &push)));
         }
-        let shear = scale(2.0, &seen(apply(&self.viscous.stress(i), &g)));
+        let stress = scale(2.0, &seen(apply(&self.viscous.stress(i), &g)));
         let pg = seen(g);
         let dissipation = 2.0 * (D as f64 + 2.0);
         let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];
         let against = sub(&self.viscous.velocity[i], &self.walls.velocity[w as usize]);
         let drag = -2.0 * self.numerics.pair_viscosity_share * c * dot(&pg, &against);
-        (pressure, add(&shear, &scale(drag, &pg)))
+        (pressure, add(&stress, &scale(drag, &pg)))
     }
 
-    /// Impulse on the particle of what is not a stress: each point's part of K (W4), of L (W7) and of (W5), as they were counted.
+    /// Impulse on the particle of what is not a stress: each point's part of K (W4), as the solve has it, and of L (W7) and of (W5), as they were counted.
     fn other_push(
         &self,
         state: &State<D>,
         pushing: &Pushing<D>,
         w: u32,
         (x, r): (&Vector<D>, f64),
-    ) -> Vector<D> {
-        let mut part = [0.0; D];
+    ) -> (Vector<D>, Vector<D>) {
+        let (mut leant, mut part) = ([0.0; D], [0.0; D]);
         let Some(seen) = pushing.seen else {
-            return part;
+            return (leant, part);
         };
         let (i, dt) = (pushing.i, pushing.dt);
         let mass = state.grains.mass[i];
@@ -184,7 +186,7 @@ impl<const D: usize> Solver<D> {
         if self.has_fluids && self.wall_projection(xi, w, state).is_none() {
             let n = self.wall_normal(xi, w, state);
             let along = sub(&pushing.leant, &scale(dot(&n, &pushing.leant), &n));
-            part = scale(-vf * dot(&n, x).powi(2), &along);
+            leant = scale(-vf * dot(&n, x).powi(2), &along);
         }
         if seen.carried != [0.0; D] {
             let share = -vf * dt * mass * dot(x, &seen.carried);
@@ -200,6 +202,6 @@ impl<const D: usize> Solver<D> {
                 part = add(&part, &scale(-dot(&away, push), grip));
             }
         }
-        part
+        (leant, part)
     }
 }

@@ -101,7 +101,7 @@ impl<const D: usize> Solver<D> {
         state.time = end;
         SubStep {
             dt,
-            bound: StepBound::Communication,
+            bound: StepBound::Asleep,
             iterations: 0,
         }
     }

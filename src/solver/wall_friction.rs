@@ -205,22 +205,31 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Adds the impulse of friction over one step to those on walls whose force somebody reads, or on all [N s].
-    pub(super) fn add_friction_reactions(&self, state: &mut State<D>, dt: f64, all: bool) {
+    ///
+    /// Returns what it is on all walls together, as the solve has it.
+    pub(super) fn add_friction_reactions(
+        &self,
+        state: &mut State<D>,
+        dt: f64,
+        read: &[bool],
+    ) -> Vector<D> {
+        let mut total = [0.0; D];
         for (row, held) in self.friction.rows.iter().zip(&self.viscous.held) {
             let v = &self.viscous.velocity[row.i];
             for c in &self.friction.contacts[row.range.clone()] {
                 let group = c.group as usize;
-                if !(all || self.walls.groups[group].wants_force) {
-                    continue;
-                }
                 let push: Vector<D> = std::array::from_fn(|k| {
                     c.area * held[k] + row.penalty * (c.area * v[k] - c.drive[k])
                 });
                 let push = c.along(&push);
                 for k in 0..D {
-                    state.impulse[group][k] += dt * push[k];
+                    total[k] += dt * push[k];
+                    if read[group] {
+                        state.impulse[group][k] += dt * push[k];
+                    }
                 }
             }
         }
+        total
     }
 }

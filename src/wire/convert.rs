@@ -123,6 +123,7 @@ pub fn step_stats(component: &Component, report: Option<&StepReport>, sequence: 
             outflow: ledger.outflow,
             present: ledger.present,
         }),
+        share_asleep: figures.share_asleep,
     }
 }
 

@@ -21,7 +21,7 @@ messages! {
         /// Name in the table of variables: `gauge.weir.depth`.
         #[prost(string, tag = "5")]
         pub name: String,
-        /// SI unit, "1" if it has none.
+        /// SI unit, empty if it has none.
         #[prost(string, tag = "6")]
         pub unit: String,
         /// The value, or all values of an array in the table's order.
@@ -190,13 +190,13 @@ messages! {
         /// Counts these messages from 0.
         #[prost(uint64, tag = "4")]
         pub sequence: u64,
-        /// Internal steps of this communication step; 4294967295 for more.
+        /// Internal steps of this communication step, none while the scene sleeps; 4294967295 for more.
         #[prost(uint32, tag = "5")]
         pub substeps: u32,
-        /// Smallest of them [s].
+        /// Smallest of them; of a scene that sleeps throughout, the time slept [s].
         #[prost(double, tag = "6")]
         pub smallest_step: f64,
-        /// What bound it: "acoustic", "motion", "viscous", "communication"; empty before the first step.
+        /// What bound it: "acoustic", "motion", "viscous", "communication", or "asleep" where nothing was computed; empty before the first step.
         #[prost(string, tag = "7")]
         pub bound_by: String,
         /// Iterations of the viscous solve, summed over the internal steps; 4294967295 for more.
@@ -226,6 +226,9 @@ messages! {
         /// Account of mass: exact in f64.
         #[prost(message, optional, tag = "16")]
         pub ledger: Option<MassLedger>,
+        /// Share of the particles that sleep [1]: where nothing moves nothing is computed.
+        #[prost(double, tag = "17")]
+        pub share_asleep: f64,
     }
 
     /// Account of mass: initial + inflow - outflow = present, exactly.
