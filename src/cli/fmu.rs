@@ -33,7 +33,7 @@ pub(super) struct Args {
     zenoh: bool,
     /// How far the reference results in the archive go, in simulated time; 0: initial values only [default: what about
     /// two seconds of computing reach, at least one step]
-    #[arg(long, value_name = "TIME", value_parser = quantity::time)]
+    #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
     reference: Option<f64>,
 }
 

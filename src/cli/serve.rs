@@ -36,10 +36,10 @@ pub(super) struct Args {
     #[arg(long)]
     allow_open_listener: bool,
     /// Step without being asked: simulated over wall time, such as 1, or inf for as fast as possible
-    #[arg(long, value_name = "FACTOR", value_parser = realtime_factor)]
+    #[arg(long, value_name = "FACTOR", value_parser = realtime_factor, allow_hyphen_values = true)]
     realtime_factor: Option<f64>,
     /// Count whoever steps it as lost after so long without a request, "10 s" or plain seconds
-    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time)]
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]
     lost_after: Option<f64>,
     /// What to do then
     #[arg(long, value_enum, default_value = "hold", requires = "lost_after")]

@@ -60,7 +60,7 @@ impl<const D: usize> Front<D> {
         D == 2 || square < radius * radius
     }
 
-    /// Outermost distance with that depth, searched from half a spacing beyond the outermost particle.
+    /// Outermost distance with that depth, searched from a spacing beyond the outermost particle.
     fn front(&self, view: &View<D>, outermost: f64, highest: f64) -> Option<f64> {
         let deep = |s: f64| {
             let foot = along(&self.origin, &self.direction, s);

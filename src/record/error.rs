@@ -87,7 +87,9 @@ pub enum ReadError {
         source: std::io::Error,
     },
     /// The file is something else.
-    #[error("{path} is not an MCAP file: it does not begin with the magic bytes \\x89MCAP0")]
+    #[error(
+        "{path} is not an MCAP file: it does not begin with the magic bytes \\x89MCAP0; give a log that a run, an FMU or a component on the bus wrote, such as run.mcap"
+    )]
     NotALog {
         /// The file.
         path: PathBuf,

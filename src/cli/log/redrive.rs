@@ -20,7 +20,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     /// Particle snapshots in that log every so much simulated time [default: the scene's]
-    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, requires = "log")]
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true, requires = "log")]
     particles_every: Option<f64>,
     /// Threads to compute with; 0 means all cores; results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]

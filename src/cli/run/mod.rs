@@ -29,7 +29,7 @@ pub(super) struct Args {
     /// The scene file, for example cases/silo_gate.toml
     pub(super) case: PathBuf,
     /// End at this simulated time, "2 s" or plain seconds [default: the scene's run.until]
-    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time)]
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]
     until: Option<f64>,
     /// Folder for the results [default: out/<case>, or the next free out/<case>-2, -3, ...]
     #[arg(long, value_name = "DIR")]
@@ -41,10 +41,10 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
     threads: u16,
     /// Communication step, "10 ms" or plain seconds [default: the scene's run.step]
-    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time)]
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]
     step: Option<f64>,
     /// Save checkpoint.state every so much simulated time (it is saved at the end and at Ctrl-C in any case)
-    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time)]
+    #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]
     checkpoint_every: Option<f64>,
     /// Go on from a saved state, and in its folder unless --out names another
     #[arg(long, value_name = "FILE", conflicts_with = "force")]
