@@ -13,7 +13,7 @@ use super::ride::{Done, Ride};
 use super::run::Figures;
 
 /// Share of a communication step's impulses by which momentum may miss them.
-const MOMENTUM: f64 = 1e-8;
+const MOMENTUM: f64 = 1e-6;
 
 /// The same without walls, over the sum of mass times speed: rounding.
 const FREE_MOMENTUM: f64 = 1e-9;
