@@ -11,7 +11,7 @@ use sandgate::scene::{self, Scene};
 
 use crate::access::Values;
 use crate::fault::{Fault, Status};
-use crate::guard::{Handle, Text, embedded_scene, shield};
+use crate::guard::{Handle, Text, embedded_scene, inside, shield};
 use crate::journal::Journal;
 use crate::log::{Category, Log, text};
 use crate::updates::Updates;
@@ -31,14 +31,16 @@ pub(crate) fn create(
     log: Log,
     build: impl FnOnce(Log) -> Result<Instance, Fault>,
 ) -> Handle {
-    let result = shield(|| build(log.clone())).unwrap_or_else(|how| Err(Fault::Broken(how)));
-    match result {
-        Ok(instance) => Handle::new(instance),
-        Err(fault) => {
-            log.say(Category::Error, Status::Error, &format!("{call}: {fault}"));
-            Handle::null()
+    inside(|| {
+        let result = shield(|| build(log.clone())).unwrap_or_else(|how| Err(Fault::Broken(how)));
+        match result {
+            Ok(instance) => Handle::new(instance),
+            Err(fault) => {
+                log.say(Category::Error, Status::Error, &format!("{call}: {fault}"));
+                Handle::null()
+            }
         }
-    }
+    })
 }
 
 impl Values for Instance {

@@ -93,6 +93,8 @@ const RULES: &[(&str, &[&str])] = &[
     ("any form of resource location will do, NULL too: nothing is read from it", &["test_any_resource_location_will_do"]),
     ("directory, locale, environment, signals and floating-point mode stay as they were; no thread outlives an instance; a thousand instances leave no thread and no file open",
         &["test_the_library_leaves_the_process_as_it_was", "test_a_thousand_instances_leave_nothing_behind"]),
+    ("importers may trap floating-point exceptions, round another way or take denormals for zero: every call computes as a program starts, with the same bits on any number of threads, and the importer's environment, flags included, is there in its callbacks and afterwards",
+        &["an_importer_keeps_its_floating_point_environment_and_gets_the_same_bits"]),
     ("with `log.path` set all traffic is in an MCAP log, roll-backs, slopes and intermediate updates included, and `sandgate log redrive --check` gives the same bits; logging changes none",
         &["test_simulate_fmu_leaves_a_log_that_runs_again", "test_roll_backs_are_in_the_log_and_run_again", "test_slopes_of_inputs_run_again", "test_what_is_done_inside_steps_runs_again", "test_logging_changes_no_bit"]),
     ("a log that cannot begin is refused when initialisation ends; one that breaks off is told once, or is an Error of the step if `log.required` is true; a thousand instances with a log leave no file and no thread open",
