@@ -1,12 +1,13 @@
 /*
  * An importer with a floating-point environment of its own: traps, another rounding, no denormals. An FMU gives it the same
  * bits as in the default environment, with any number of threads; its own environment is as it was after every call, and
- * inside its callbacks.
+ * inside its callbacks. So does a thread with a small stack.
  *
  *   environment TOKEN THREADS RESOLUTION OPENING     value references of solver.threads and so on; linked with a packed library
  */
 #define _GNU_SOURCE
 #include <fenv.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -123,6 +124,24 @@ static void compare(const char *where, fmi3Int64 threads) {
     free(found.all);
 }
 
+static void *with_little_stack(void *unused) {
+    compare("a stack of 128 KiB", 1);
+    compare("a stack of 128 KiB", 2);
+    return unused;
+}
+
+/* An embedded scene takes 256 KiB: a copy of it on this stack ends the process. */
+static void run_on_a_small_stack(void) {
+    pthread_attr_t small;
+    pthread_t thread;
+    if (pthread_attr_init(&small) != 0 || pthread_attr_setstacksize(&small, 128 * 1024) != 0
+        || pthread_create(&thread, &small, with_little_stack, NULL) != 0) {
+        fprintf(stderr, "no thread\n");
+        exit(1);
+    }
+    pthread_join(thread, NULL);
+}
+
 int main(int argc, char **argv) {
     fmi3Int64 threads;
     if (argc != 5) {
@@ -149,6 +168,7 @@ int main(int argc, char **argv) {
         _mm_setcsr(_mm_getcsr() & ~0x8040u);
 #endif
     }
+    run_on_a_small_stack();
     if (logged == 0 || updated == 0) {
         fprintf(stderr, "%d messages, %d updates\n", logged, updated);
         return 1;
