@@ -33,7 +33,7 @@ fn code(result: Result<(), Fault>) -> i32 {
     match result {
         Ok(()) => 0,
         Err(Fault::Component(error)) => error.status().c_code,
-        Err(Fault::Border(_)) => 3,
+        Err(Fault::Border(_) | Fault::NoStatus(_)) => 3,
         Err(Fault::Broken(_)) => 6,
         Err(Fault::Outside(_)) => 7,
     }

@@ -157,7 +157,7 @@ pub(crate) extern "C" fn fmi2GetRealStatus(c: Handle, kind: i32, mut value: Out<
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2GetIntegerStatus(c: Handle, _kind: i32, _value: Out<i32>) -> Status {
     c.call("fmi2GetIntegerStatus", Need::Any, |_| {
-        Err(Fault::border("the standard has no integer status"))
+        Err(no_status("FMI 2 has no integer status"))
     })
     .into()
 }
@@ -178,14 +178,24 @@ pub(crate) extern "C" fn fmi2GetStringStatus(
     _kind: i32,
     _value: Out<*const c_char>,
 ) -> Status {
-    c.not_provided("fmi2GetStringStatus", "canRunAsynchronuously")
+    c.call("fmi2GetStringStatus", Need::Any, |_| {
+        Err(no_status(
+            "no step is ever pending; see canRunAsynchronuously in modelDescription.xml",
+        ))
+    })
+    .into()
+}
+
+/// What cannot be given is discarded, says FMI 2.0.4, section 4.2.3.
+fn no_status(why: &str) -> Fault {
+    Fault::NoStatus(why.to_owned())
 }
 
 fn expect_kind(found: i32, allowed: i32, name: &str) -> Result<(), Fault> {
     if found == allowed {
         return Ok(());
     }
-    Err(Fault::border(format!(
+    Err(no_status(&format!(
         "status kind: found {found}, allowed {name}"
     )))
 }

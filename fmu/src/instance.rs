@@ -165,7 +165,7 @@ impl Instance {
         if let Some(fault) = fault {
             let message = format!("{call}: {fault}");
             self.last_error = text(&message);
-            self.log.say(Category::Error, Status::Error, &message);
+            self.log.say(Category::Error, fault.status(), &message);
         }
         self.journal
             .reply(&self.component, fault.map_or(Ok(()), Err));

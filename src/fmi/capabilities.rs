@@ -85,6 +85,8 @@ const RULES: &[(&str, &[&str])] = &[
     ("an input that is out of range by up to a billionth of its range is clamped; beyond, it is refused, or clamped and reported (`logStatusWarning`) if `saturate_inputs` is true",
         &["inputs_are_clamped_only_as_far_as_allowed", "test_clamped_inputs_are_reported"]),
     ("set calls are all or nothing", &["sets_apply_all_or_nothing"]),
+    ("a status that FMI 2 has no value for here (pending, integers, texts) is discarded, with a message; only such calls answer Discard",
+        &["every_call_of_fmi_2_in_every_mode"]),
     ("getters compute nothing: any order, partition and repetition of references gives the same bits", &["reading_in_any_order_gives_the_same_bits"]),
     ("fixed parameters may be set before and inside initialisation, in any order, and travel in states", &["parameters_count_whenever_they_are_set", "values_that_do_not_go_together_wait_for_each_other"]),
     ("FMI 2 works without `fmi2SetupExperiment`, with parameters set inside initialisation", &["test_fmi_2_without_setup_experiment_and_parameters_in_initialization_mode"]),
