@@ -13,7 +13,7 @@ use sandgate::fmi::FmiVersion;
 
 use crate::fault::{Fault, Status};
 use crate::guard::{Callbacks2, Handle, In, Need, Out, Text};
-use crate::instance::{Experiment, Instance, create};
+use crate::instance::{Experiment, Instance, checked_name, create};
 use crate::log::{Log, Sink, text};
 
 const CO_SIMULATION: i32 = 1;
@@ -61,9 +61,7 @@ pub(crate) extern "C" fn fmi2Instantiate(
         None => Sink::Nobody,
     };
     create("fmi2Instantiate", Log::new(sink, logging != 0), |log| {
-        if name.get("instanceName")?.is_empty() {
-            return Err(Fault::border("instanceName is empty, expected a name"));
-        }
+        checked_name(name.get("instanceName")?)?;
         if kind != CO_SIMULATION {
             return Err(Fault::border(format!(
                 "fmuType: found {kind}, allowed 1 (fmi2CoSimulation)"

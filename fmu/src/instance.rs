@@ -43,6 +43,16 @@ pub(crate) fn create(
     })
 }
 
+/// An instance's name: it stands in messages and topics, so white space alone is none.
+pub(crate) fn checked_name(name: &str) -> Result<&str, Fault> {
+    if name.trim().is_empty() {
+        return Err(Fault::border(format!(
+            "instanceName: found {name:?}, allowed a name with a visible character"
+        )));
+    }
+    Ok(name)
+}
+
 impl Values for Instance {
     fn table(&self) -> &VariableTable {
         self.component.variables()
