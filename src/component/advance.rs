@@ -106,13 +106,13 @@ impl Component {
     /// One internal step after the other; gives the end that was met.
     fn advance_watched(
         &mut self,
-        (start, mut end): (f64, f64),
+        (start, wanted): (f64, f64),
         before: &FlowMass,
         watcher: &mut Watcher<'_>,
     ) -> Result<(Advance, f64), SolverError> {
         let mut advance = Advance::none();
         self.engine.begin(start, &self.life.inputs);
-        let mut time = start;
+        let (mut time, mut end) = (start, wanted);
         while time < end {
             time = self
                 .engine
@@ -120,13 +120,14 @@ impl Component {
             let mut moment = Intermediate {
                 component: self,
                 start,
+                end: wanted,
                 time,
                 before,
                 outputs: None,
             };
             match watcher(&mut moment) {
                 Wish::GoOn => {}
-                Wish::EndAt(wanted) if wanted > time => end = end.min(wanted),
+                Wish::EndAt(earlier) if earlier > time => end = end.min(earlier),
                 // What has passed, or is no time at all: now.
                 Wish::EndAt(_) => end = time,
             }

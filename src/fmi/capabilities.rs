@@ -53,7 +53,7 @@ const CAPABILITIES: &[Capability] = &[
         &["test_a_state_goes_on_in_another_process", "five_hundred_bad_states_are_refused_without_harm", "test_a_state_goes_between_versions"]),
     claim(("", "providesIntermediateUpdate"), "true",
         "after every internal step, from the calling thread: continuous outputs may be read, inputs set",
-        &["updates_come_after_internal_steps_and_watching_changes_no_bit", "inputs_set_inside_a_step_count_from_there", "other_calls_inside_an_update_are_refused_with_a_message"]),
+        &["updates_come_after_internal_steps_and_watching_changes_no_bit", "inputs_set_inside_a_step_count_from_there", "inputs_are_set_inside_a_step_only_if_that_was_asked_for", "other_calls_inside_an_update_are_refused_with_a_message"]),
     claim(("", "canReturnEarlyAfterIntermediateUpdate"), "true",
         "only if the importer allowed it; the time asked for is met bit for bit",
         &["a_step_ends_early_only_if_allowed_and_then_exactly_there"]),
