@@ -1,6 +1,7 @@
 //! FMI 3's intermediate updates: the importer is called from inside a step, and reaches the component meanwhile.
 
 use sandgate::component::{Intermediate, VariableTable, Wish};
+use sandgate::units::shown;
 
 use crate::access::Values;
 use crate::fault::{Fault, Status};
@@ -69,6 +70,7 @@ fn outside(time: f64, moment: &Intermediate<'_>) -> Option<String> {
         return None;
     }
     let ends = if time > end { end } else { moment.time() };
+    let [time, start, end, ends] = [time, start, end, ends].map(shown);
     Some(format!(
         "fmi3DoStep: earlyReturnTime: found {time} s, allowed {start} s to {end} s, the step; it ends at {ends} s"
     ))

@@ -6,6 +6,7 @@ use super::lifecycle::{self, Call};
 use super::outputs::{self, FlowMass};
 use super::watch::{Intermediate, Wish};
 use super::{Component, Error, Mode, StepReport};
+use crate::units::{shown, shown_bound};
 
 /// Who looks at the internal steps of a communication step.
 type Watcher<'w> = dyn FnMut(&mut Intermediate<'_>) -> Wish + 'w;
@@ -141,7 +142,7 @@ impl Component {
             Err(Error::BadArgument {
                 call: "do_step",
                 what: what.to_owned(),
-                found: format!("{found} s"),
+                found: format!("{} s", shown(found)),
                 allowed,
             })
         };
@@ -152,17 +153,17 @@ impl Component {
         }
         // Written so that NaN is refused.
         if !is_same_time(t, time, h) {
-            return refuse("t", t, format!("{time} s, the current time"));
+            return refuse("t", t, format!("{} s, the current time", shown(time)));
         }
         let end = t + h;
         if end <= time {
-            let next = time.next_up();
-            let allowed = format!("a time after {time} s, the current time: {next} s or more");
+            let (now, next) = (shown(time), shown(time.next_up()));
+            let allowed = format!("a time after {now} s, the current time: {next} s or more");
             return refuse("t + h", end, allowed);
         }
         match self.life.stop {
             Some(stop) if end > stop && !is_same_time(end, stop, h) => {
-                let allowed = format!("a step that ends by {stop} s, the stop time");
+                let allowed = format!("a step that ends by {} s, the stop time", shown(stop));
                 refuse("t + h", end, allowed)
             }
             _ => Ok(end),
@@ -184,14 +185,15 @@ impl Component {
             if ramp.slope == 0.0 || (-slack..=most + slack).contains(&reached) {
                 continue;
             }
-            let what = format!("{name} at the end of the step, by its slope {}", ramp.slope);
+            let slope = shown(ramp.slope);
+            let what = format!("{name} at the end of the step, by its slope {slope}");
             // An end that is not finite cannot be held to a range.
             if !self.life.saturate_inputs || !reached.is_finite() {
                 return Err(Error::BadArgument {
                     call: "do_step",
                     what,
-                    found: reached.to_string(),
-                    allowed: format!("0 to {most}"),
+                    found: shown(reached),
+                    allowed: format!("0 to {}", shown_bound(most)),
                 });
             }
             notes.push(saturated(&what, reached, reached.clamp(0.0, most)));
