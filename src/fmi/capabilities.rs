@@ -78,7 +78,7 @@ const CAPABILITIES: &[Capability] = &[
 /// Rules that importers impose, how they are kept, and the tests that prove it.
 #[rustfmt::skip]
 const RULES: &[(&str, &[&str])] = &[
-    ("`doStep` answers OK or Error, never Warning, Discard or Fatal; every Error comes with a message that says what was found and what is allowed",
+    ("`doStep` answers OK or Error, never Warning, Discard or Fatal; every Error comes with a message that says what was found and what is allowed (but that of a call beside a running one: see Messages)",
         &["refused_calls_leave_no_trace", "every_call_of_fmi_2_in_every_mode", "every_call_of_fmi_3_in_every_mode", "every_call_of_the_c_interface_in_every_mode"]),
     ("a refused call answers within a second and leaves the saved state byte for byte as it was: h = 0, negative, NaN, infinite, denormal, wrong t, past the stop time, unknown references, wrong lengths, inputs that are no number or out of range, fixed parameters after initialisation, every call in every wrong mode",
         &["refused_calls_leave_no_trace", "every_call_of_fmi_2_in_every_mode", "every_call_of_fmi_3_in_every_mode", "every_call_of_the_c_interface_in_every_mode"]),
