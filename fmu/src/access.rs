@@ -180,15 +180,26 @@ pub(crate) fn get_texts(
     out.write(&pointers, "values")
 }
 
-/// Slopes of outputs; orders other than 1 are refused.
+/// What a derivative of an order above 1 is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Above {
+    /// 0.
+    IsZero,
+    /// A mistake.
+    IsRefused,
+}
+
+/// Slopes of outputs: derivatives of order 1.
 pub(crate) fn output_derivatives(
     from: &mut (impl Values + ?Sized),
     references: &[u32],
     orders: &[i32],
+    above: Above,
     out: &mut Out<f64>,
     count: usize,
 ) -> Result<(), Fault> {
-    if let Some(order) = orders.iter().find(|order| **order != 1) {
+    let fits = |order: i32| order == 1 || (order > 1 && above == Above::IsZero);
+    if let Some(order) = orders.iter().find(|order| !fits(**order)) {
         return Err(Fault::border(format!(
             "order: found {order}, allowed 1 (maxOutputDerivativeOrder)"
         )));
@@ -199,6 +210,16 @@ pub(crate) fn output_derivatives(
     from.table().check_length(call, references, count)?;
     let mut slopes = vec![0.0; count];
     from.slopes(references, &mut slopes)?;
+    if above == Above::IsZero {
+        // FMI 2 has no arrays: a value each reference.
+        for (slope, _) in slopes
+            .iter_mut()
+            .zip(orders)
+            .filter(|(_, order)| **order > 1)
+        {
+            *slope = 0.0;
+        }
+    }
     out.write(&slopes, "values")
 }
 

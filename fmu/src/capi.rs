@@ -12,7 +12,7 @@ use sandgate::scene::{self, Scene, SceneErrors};
 
 use crate::fault::Fault;
 use crate::guard::{
-    CLedger, CStepReport, Environment, Handle, Need, Out, PlainLogger, Text, shield,
+    CLedger, CStepReport, Environment, Handle, Need, Out, PlainLogger, Text, inside, shield,
 };
 use crate::instance::Instance;
 use crate::log::{Log, Sink};
@@ -33,7 +33,7 @@ fn code(result: Result<(), Fault>) -> i32 {
     match result {
         Ok(()) => 0,
         Err(Fault::Component(error)) => error.status().c_code,
-        Err(Fault::Border(_)) => 3,
+        Err(Fault::Border(_) | Fault::NoStatus(_)) => 3,
         Err(Fault::Broken(_)) => 6,
         Err(Fault::Outside(_)) => 7,
     }
@@ -84,9 +84,11 @@ fn create(
     error_size: usize,
     load: impl FnOnce() -> Result<Result<Scene, SceneErrors>, Fault>,
 ) -> Handle {
-    let made = shield(|| {
-        let scene = load()?.map_err(|errors| Fault::border(errors.to_string()))?;
-        Instance::new(&scene, Log::new(Sink::Nobody, false))
+    let made = inside(|| {
+        shield(|| {
+            let scene = load()?.map_err(|errors| Fault::border(errors.to_string()))?;
+            Instance::new(&scene, Log::new(Sink::Nobody, false))
+        })
     });
     let reason = match made {
         Ok(Ok(mut instance)) => {

@@ -11,6 +11,8 @@ pub(crate) enum Fault {
     Component(Error),
     /// The arguments or the instance do not allow the call at all.
     Border(String),
+    /// FMI 2: a status was asked for that this library does not have.
+    NoStatus(String),
     /// The log or the Zenoh session that parameters ask for cannot be opened or written.
     #[cfg_attr(
         not(feature = "record"),
@@ -25,7 +27,10 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Component(error) => error.fmt(f),
-            Self::Border(text) | Self::Outside(text) | Self::Broken(text) => f.write_str(text),
+            Self::Border(text)
+            | Self::NoStatus(text)
+            | Self::Outside(text)
+            | Self::Broken(text) => f.write_str(text),
         }
     }
 }
@@ -42,9 +47,17 @@ impl Fault {
     pub(crate) fn code(&self) -> &'static str {
         match self {
             Self::Component(error) => error.status().reply,
-            Self::Border(_) => "bad_request",
+            Self::Border(_) | Self::NoStatus(_) => "bad_request",
             Self::Outside(_) => "outside",
             Self::Broken(_) => "internal",
+        }
+    }
+
+    /// What the call answers in FMI 2 and FMI 3.
+    pub(crate) fn status(&self) -> Status {
+        match self {
+            Self::NoStatus(_) => Status::Discard,
+            _ => Status::Error,
         }
     }
 
@@ -53,14 +66,17 @@ impl Fault {
     }
 }
 
-/// Status of FMI 2 and FMI 3: the numbers are the same. Warning goes to loggers only. Warning, Discard and Fatal are never given: importers take the
-/// first two for failures or repeat the step for ever, and no memory is corrupt after a caught panic.
+/// Status of FMI 2 and FMI 3: the numbers are the same. Warning goes to loggers only, Discard is what FMI 2 asks for where a status
+/// cannot be given, and no step answers either: importers take them for failures or repeat the step for ever. Fatal is never
+/// given: no memory is corrupt after a caught panic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub(crate) enum Status {
     Ok = 0,
     /// For log messages; no call answers it.
     Warning = 1,
+    /// Of fmi2GetStatus and its like only.
+    Discard = 2,
     Error = 3,
 }
 
@@ -68,7 +84,7 @@ impl From<Result<(), Fault>> for Status {
     fn from(result: Result<(), Fault>) -> Self {
         match result {
             Ok(()) => Self::Ok,
-            Err(_) => Self::Error,
+            Err(fault) => fault.status(),
         }
     }
 }

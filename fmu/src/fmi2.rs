@@ -13,7 +13,7 @@ use sandgate::fmi::FmiVersion;
 
 use crate::fault::{Fault, Status};
 use crate::guard::{Callbacks2, Handle, In, Need, Out, Text};
-use crate::instance::{Experiment, Instance, create};
+use crate::instance::{Experiment, Instance, checked_name, create};
 use crate::log::{Log, Sink, text};
 
 const CO_SIMULATION: i32 = 1;
@@ -61,9 +61,7 @@ pub(crate) extern "C" fn fmi2Instantiate(
         None => Sink::Nobody,
     };
     create("fmi2Instantiate", Log::new(sink, logging != 0), |log| {
-        if name.get("instanceName")?.is_empty() {
-            return Err(Fault::border("instanceName is empty, expected a name"));
-        }
+        checked_name(name.get("instanceName")?)?;
         if kind != CO_SIMULATION {
             return Err(Fault::border(format!(
                 "fmuType: found {kind}, allowed 1 (fmi2CoSimulation)"
@@ -157,7 +155,7 @@ pub(crate) extern "C" fn fmi2GetRealStatus(c: Handle, kind: i32, mut value: Out<
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2GetIntegerStatus(c: Handle, _kind: i32, _value: Out<i32>) -> Status {
     c.call("fmi2GetIntegerStatus", Need::Any, |_| {
-        Err(Fault::border("the standard has no integer status"))
+        Err(no_status("FMI 2 has no integer status"))
     })
     .into()
 }
@@ -178,14 +176,24 @@ pub(crate) extern "C" fn fmi2GetStringStatus(
     _kind: i32,
     _value: Out<*const c_char>,
 ) -> Status {
-    c.not_provided("fmi2GetStringStatus", "canRunAsynchronuously")
+    c.call("fmi2GetStringStatus", Need::Any, |_| {
+        Err(no_status(
+            "no step is ever pending; see canRunAsynchronuously in modelDescription.xml",
+        ))
+    })
+    .into()
+}
+
+/// What cannot be given is discarded, says FMI 2.0.4, section 4.2.3.
+fn no_status(why: &str) -> Fault {
+    Fault::NoStatus(why.to_owned())
 }
 
 fn expect_kind(found: i32, allowed: i32, name: &str) -> Result<(), Fault> {
     if found == allowed {
         return Ok(());
     }
-    Err(Fault::border(format!(
+    Err(no_status(&format!(
         "status kind: found {found}, allowed {name}"
     )))
 }

@@ -16,7 +16,7 @@ use crate::fault::{Fault, Status};
 use crate::guard::{
     Environment, Handle, In, IntermediateUpdate3, Logger3, Need, Out, Text, UnusedCallback,
 };
-use crate::instance::{Instance, create};
+use crate::instance::{Instance, checked_name, create};
 use crate::log::{Log, Sink};
 use crate::updates::Updates;
 
@@ -101,10 +101,7 @@ pub(crate) extern "C" fn fmi3InstantiateCoSimulation(
 ) -> Handle {
     let log = Log::new(Sink::Fmi3(log, environment), logging != 0);
     create("fmi3InstantiateCoSimulation", log, |log| {
-        let name = name.get("instanceName")?;
-        if name.is_empty() {
-            return Err(Fault::border("instanceName is empty, expected a name"));
-        }
+        let name = checked_name(name.get("instanceName")?)?;
         if event_mode_used != 0 {
             return Err(Fault::border(
                 "eventModeUsed: found true, allowed false (hasEventMode is false)",

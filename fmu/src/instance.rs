@@ -11,7 +11,7 @@ use sandgate::scene::{self, Scene};
 
 use crate::access::Values;
 use crate::fault::{Fault, Status};
-use crate::guard::{Handle, Text, embedded_scene, shield};
+use crate::guard::{Handle, Text, embedded_scene, inside, shield};
 use crate::journal::Journal;
 use crate::log::{Category, Log, text};
 use crate::updates::Updates;
@@ -31,14 +31,26 @@ pub(crate) fn create(
     log: Log,
     build: impl FnOnce(Log) -> Result<Instance, Fault>,
 ) -> Handle {
-    let result = shield(|| build(log.clone())).unwrap_or_else(|how| Err(Fault::Broken(how)));
-    match result {
-        Ok(instance) => Handle::new(instance),
-        Err(fault) => {
-            log.say(Category::Error, Status::Error, &format!("{call}: {fault}"));
-            Handle::null()
+    inside(|| {
+        let result = shield(|| build(log.clone())).unwrap_or_else(|how| Err(Fault::Broken(how)));
+        match result {
+            Ok(instance) => Handle::new(instance),
+            Err(fault) => {
+                log.say(Category::Error, Status::Error, &format!("{call}: {fault}"));
+                Handle::null()
+            }
         }
+    })
+}
+
+/// An instance's name: it stands in messages and topics, so white space alone is none.
+pub(crate) fn checked_name(name: &str) -> Result<&str, Fault> {
+    if name.trim().is_empty() {
+        return Err(Fault::border(format!(
+            "instanceName: found {name:?}, allowed a name with a visible character"
+        )));
     }
+    Ok(name)
 }
 
 impl Values for Instance {
@@ -163,7 +175,7 @@ impl Instance {
         if let Some(fault) = fault {
             let message = format!("{call}: {fault}");
             self.last_error = text(&message);
-            self.log.say(Category::Error, Status::Error, &message);
+            self.log.say(Category::Error, fault.status(), &message);
         }
         self.journal
             .reply(&self.component, fault.map_or(Ok(()), Err));

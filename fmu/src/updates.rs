@@ -1,6 +1,7 @@
 //! FMI 3's intermediate updates: the importer is called from inside a step, and reaches the component meanwhile.
 
 use sandgate::component::{Intermediate, VariableTable, Wish};
+use sandgate::units::shown;
 
 use crate::access::Values;
 use crate::fault::{Fault, Status};
@@ -36,17 +37,25 @@ impl Updates {
         let mut guest = Guest {
             moment,
             log,
+            may_set: self.sets_inputs,
             inputs: Vec::new(),
             is_hurt: false,
         };
         let wanted = door.open(&mut guest, || self.callback.call(self.environment, pause));
+        let inputs = guest.inputs;
         let wish = match wanted {
-            Some(time) if self.early_return_allowed => Wish::EndAt(time),
+            Some(time) if self.early_return_allowed => {
+                if let Some(note) = outside(time, moment) {
+                    log.say(Category::Warning, Status::Warning, &note);
+                    journal.warning(moment.component(), &note);
+                }
+                Wish::EndAt(time)
+            }
             _ => Wish::GoOn,
         };
         let told = Moment {
             time: pause.time,
-            inputs: guest.inputs,
+            inputs,
             wish,
         };
         journal.moment(moment.component(), &told);
@@ -54,10 +63,25 @@ impl Updates {
     }
 }
 
+/// What to say of a time for an early return that is not in the step.
+fn outside(time: f64, moment: &Intermediate<'_>) -> Option<String> {
+    let (start, end) = moment.step();
+    if (start..=end).contains(&time) {
+        return None;
+    }
+    let ends = if time > end { end } else { moment.time() };
+    let [time, start, end, ends] = [time, start, end, ends].map(shown);
+    Some(format!(
+        "fmi3DoStep: earlyReturnTime: found {time} s, allowed {start} s to {end} s, the step; it ends at {ends} s"
+    ))
+}
+
 /// What the importer reaches while it is called from inside a step.
 pub(crate) struct Guest<'m, 'c> {
     moment: &'m mut Intermediate<'c>,
     log: &'m Log,
+    /// What the importer was told: intermediateVariableSetRequested.
+    may_set: bool,
     /// Inputs that were set.
     inputs: Vec<(Vec<u32>, Vec<f64>)>,
     /// Whether an access broke down.
@@ -82,6 +106,12 @@ impl Values for Guest<'_, '_> {
     }
 
     fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault> {
+        if !self.may_set {
+            return Err(Fault::border(
+                "intermediateVariableSetRequested is false: no input is among requiredIntermediateVariables; name one when \
+                 instantiating, or set inputs between steps",
+            ));
+        }
         self.moment.set(references, values)?;
         self.inputs.push((references.to_vec(), values.to_vec()));
         Ok(())

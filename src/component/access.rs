@@ -4,6 +4,7 @@ use super::engine::Ramp;
 use super::lifecycle::{self, Call};
 use super::variables::{Causality, Source, ValueKind, Variability, Variable};
 use super::{Component, Error, ValueReference, VariableTable};
+use crate::units::{shown, shown_bound};
 
 /// Share of its range by which an input may be out of it: what rounding does to a controller's limit.
 const RANGE_SLACK: f64 = 1e-9;
@@ -94,7 +95,7 @@ impl Component {
                 return Err(bad(CALL, &row.name, "a parameter", "inputs"));
             }
             if !slope.is_finite() {
-                return Err(bad(CALL, &row.name, &slope.to_string(), "a finite slope"));
+                return Err(bad(CALL, &row.name, &shown(*slope), "a finite slope"));
             }
         }
         for (reference, slope) in references.iter().zip(slopes) {
@@ -271,6 +272,7 @@ impl VariableTable {
 
 /// What is told of an input that was clamped.
 pub(super) fn saturated(what: &str, found: f64, clamped: f64) -> String {
+    let (found, clamped) = (shown(found), shown_bound(clamped));
     format!("{what}: found {found}, clamped to {clamped}, because saturate_inputs is true")
 }
 
@@ -291,13 +293,9 @@ fn check_value(row: &Variable, value: f64) -> Result<(), Error> {
     } else {
         row.unit
     };
+    let (least, most) = (shown_bound(least), shown_bound(most));
     let allowed = format!("{number} from {least} to {most} {unit}");
-    Err(bad(
-        "set",
-        &row.name,
-        &value.to_string(),
-        allowed.trim_end(),
-    ))
+    Err(bad("set", &row.name, &shown(value), allowed.trim_end()))
 }
 
 pub(super) fn bad(call: &'static str, what: &str, found: &str, allowed: &str) -> Error {

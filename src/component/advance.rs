@@ -6,27 +6,37 @@ use super::lifecycle::{self, Call};
 use super::outputs::{self, FlowMass};
 use super::watch::{Intermediate, Wish};
 use super::{Component, Error, Mode, StepReport};
+use crate::units::{shown, shown_bound};
 
 /// Who looks at the internal steps of a communication step.
 type Watcher<'w> = dyn FnMut(&mut Intermediate<'_>) -> Wish + 'w;
 
-/// Orchestrators add up step sizes, so their time may differ from ours by rounding; more than this share (or this
-/// many seconds below 1 s) is a mistake.
+/// Orchestrators add up step sizes, so their time may differ from ours by rounding: by this share of it (below 1 s this
+/// many seconds), ...
 const TIME_SLACK: f64 = 1e-9;
+/// ... but by no more than this share of the step, which is what the step gets longer or shorter by. Far from 0 (seconds since
+/// 1970) the first one alone would let whole steps pass.
+const STEP_SLACK: f64 = 1e-3;
+/// Any time may be off by so many of the smallest differences between doubles of its size: start + n h, once by multiplying
+/// and once from the point before, differ by up to two.
+const ROUNDINGS: f64 = 4.0;
 
 /// A slope of (1 - x) / h reaches 1 only but for rounding; more than this share of the range beyond it is a mistake.
 const SLOPE_SLACK: f64 = 1e-9;
 
-/// Whether two times are the same but for an orchestrator's rounding.
-fn is_same_time(a: f64, b: f64) -> bool {
-    (a - b).abs() <= TIME_SLACK * b.abs().max(1.0)
+/// Whether two times are the same but for an orchestrator's rounding, at the start or end of a step of length `h`.
+fn is_same_time(a: f64, b: f64, h: f64) -> bool {
+    let size = b.abs();
+    let added_up = (TIME_SLACK * size.max(1.0)).min(STEP_SLACK * h.abs());
+    (a - b).abs() <= added_up.max(ROUNDINGS * (size.next_up() - size))
 }
 
 impl Component {
     /// Advances from `t` to `t + h` exactly, in as many internal steps as stability asks for.
     ///
-    /// `t` may differ from [`Component::time`] by a billionth (of it, or of a second below 1 s), for orchestrators
-    /// that add up steps: the step then begins at the component's own time and ends at `t + h`, bit for bit.
+    /// `t` may differ from [`Component::time`] by a billionth (of it, or of a second below 1 s) but no more than a thousandth
+    /// of `h`, or by the rounding of doubles, for orchestrators that add up steps: the step then begins at the component's
+    /// own time and ends at `t + h`, bit for bit. It may end as much later than the stop time.
     ///
     /// # Errors
     /// [`Error::NotAllowedNow`], [`Error::BadArgument`] (t is not the current time, h not finite and positive, past the
@@ -97,13 +107,13 @@ impl Component {
     /// One internal step after the other; gives the end that was met.
     fn advance_watched(
         &mut self,
-        (start, mut end): (f64, f64),
+        (start, wanted): (f64, f64),
         before: &FlowMass,
         watcher: &mut Watcher<'_>,
     ) -> Result<(Advance, f64), SolverError> {
         let mut advance = Advance::none();
         self.engine.begin(start, &self.life.inputs);
-        let mut time = start;
+        let (mut time, mut end) = (start, wanted);
         while time < end {
             time = self
                 .engine
@@ -111,13 +121,14 @@ impl Component {
             let mut moment = Intermediate {
                 component: self,
                 start,
+                end: wanted,
                 time,
                 before,
                 outputs: None,
             };
             match watcher(&mut moment) {
                 Wish::GoOn => {}
-                Wish::EndAt(wanted) if wanted > time => end = end.min(wanted),
+                Wish::EndAt(earlier) if earlier > time => end = end.min(earlier),
                 // What has passed, or is no time at all: now.
                 Wish::EndAt(_) => end = time,
             }
@@ -131,30 +142,28 @@ impl Component {
             Err(Error::BadArgument {
                 call: "do_step",
                 what: what.to_owned(),
-                found: format!("{found} s"),
+                found: format!("{} s", shown(found)),
                 allowed,
             })
         };
         let time = self.life.time;
-        // Written so that NaN is refused.
-        if !is_same_time(t, time) {
-            return refuse("t", t, format!("{time} s, the current time"));
-        }
         if !(h.is_finite() && h >= f64::MIN_POSITIVE) {
             let allowed = "a finite step above 0 s, not denormal";
             return refuse("h", h, allowed.to_owned());
         }
+        // Written so that NaN is refused.
+        if !is_same_time(t, time, h) {
+            return refuse("t", t, format!("{} s, the current time", shown(time)));
+        }
         let end = t + h;
         if end <= time {
-            return refuse(
-                "h",
-                h,
-                format!("a step that changes the time {time} s in double precision"),
-            );
+            let (now, next) = (shown(time), shown(time.next_up()));
+            let allowed = format!("a time after {now} s, the current time: {next} s or more");
+            return refuse("t + h", end, allowed);
         }
         match self.life.stop {
-            Some(stop) if end > stop && !is_same_time(end, stop) => {
-                let allowed = format!("a step that ends by {stop} s, the stop time");
+            Some(stop) if end > stop && !is_same_time(end, stop, h) => {
+                let allowed = format!("a step that ends by {} s, the stop time", shown(stop));
                 refuse("t + h", end, allowed)
             }
             _ => Ok(end),
@@ -176,14 +185,15 @@ impl Component {
             if ramp.slope == 0.0 || (-slack..=most + slack).contains(&reached) {
                 continue;
             }
-            let what = format!("{name} at the end of the step, by its slope {}", ramp.slope);
+            let slope = shown(ramp.slope);
+            let what = format!("{name} at the end of the step, by its slope {slope}");
             // An end that is not finite cannot be held to a range.
             if !self.life.saturate_inputs || !reached.is_finite() {
                 return Err(Error::BadArgument {
                     call: "do_step",
                     what,
-                    found: reached.to_string(),
-                    allowed: format!("0 to {most}"),
+                    found: shown(reached),
+                    allowed: format!("0 to {}", shown_bound(most)),
                 });
             }
             notes.push(saturated(&what, reached, reached.clamp(0.0, most)));
@@ -209,5 +219,41 @@ impl Component {
         for (ramp, inflow) in inputs.inflow_rate.iter_mut().zip(&self.scene.inflows) {
             hold(ramp, inflow.max_rate);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_same_time;
+
+    #[test]
+    fn a_million_steps_of_any_driver_are_taken() {
+        for start in [0.0, -3.7, 1.0, 1e3, 86_400.0, 1.7e9] {
+            for h in [1e-3, 1e-2, 0.1 / 3.0, 1.0 / 256.0, 0.3] {
+                let (mut time, mut summed) = (start, start);
+                for n in 0..1_000_000_u32 {
+                    let t = start + f64::from(n) * h;
+                    assert!(is_same_time(t, time, h), "{start} {h} {n}: {t} {time}");
+                    time = t + h;
+                    summed += h;
+                }
+                // One who has added up goes on as one who multiplies.
+                assert!(
+                    start != 0.0 || is_same_time(summed, time, h),
+                    "{h}: {summed}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn no_step_is_lengthened_or_skipped_by_more_than_a_thousandth() {
+        for (t, h) in [(1.7e9, 0.01), (1e6, 1e-3), (1e5, 1e-5), (0.0, 1e-7)] {
+            assert!(!is_same_time(t + 1.1e-3 * h, t, h), "{t} {h}");
+            assert!(!is_same_time(t - h, t, h), "{t} {h}");
+        }
+        // As before where times are small.
+        assert!(is_same_time(1.0 + 0.9e-9, 1.0, 0.01) && !is_same_time(1.0 + 1.1e-9, 1.0, 0.01));
+        assert!(!is_same_time(f64::NAN, 0.0, 0.01));
     }
 }

@@ -46,6 +46,7 @@ pub use watch::{Intermediate, Wish};
 pub use crate::solver::StaysAwake;
 
 use crate::scene::Scene;
+use crate::units::shown;
 use engine::Engine;
 use life::Life;
 use lifecycle::Call;
@@ -195,7 +196,7 @@ impl Component {
             Err(Error::BadArgument {
                 call,
                 what: what.to_owned(),
-                found: format!("{found} s"),
+                found: format!("{} s", shown(found)),
                 allowed,
             })
         };
@@ -218,7 +219,7 @@ impl Component {
             return refuse(
                 "stop time",
                 stop,
-                format!("a finite time from {start} s, the start, on"),
+                format!("a finite time from {} s, the start, on", shown(start)),
             );
         }
         Ok(())

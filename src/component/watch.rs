@@ -21,6 +21,8 @@ pub struct Intermediate<'a> {
     pub(super) component: &'a mut Component,
     /// Start of the communication step [s].
     pub(super) start: f64,
+    /// Where it is to end, unless a wish ends it earlier [s].
+    pub(super) end: f64,
     /// Time reached [s].
     pub(super) time: f64,
     pub(super) before: &'a FlowMass,
@@ -33,6 +35,12 @@ impl Intermediate<'_> {
     #[must_use]
     pub fn time(&self) -> f64 {
         self.time
+    }
+
+    /// Start and end of the communication step as it was asked for [s].
+    #[must_use]
+    pub fn step(&self) -> (f64, f64) {
+        (self.start, self.end)
     }
 
     /// The component's table and scene; its values are those of the last communication point.

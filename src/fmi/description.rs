@@ -233,7 +233,14 @@ pub(super) fn is_initial_unknown(row: &Variable) -> bool {
     is_output(row) && row.start == Start::Calculated
 }
 
-fn start_value(kind: ValueKind, value: f64) -> String {
+/// What initialisation computes outputs from: the parameters that change the scene. Inputs count from the first step on.
+pub(super) fn is_known_to_initialisation(row: &Variable) -> bool {
+    row.causality == Causality::Parameter
+        && row.variability == Variability::Fixed
+        && row.kind == ValueKind::Real
+}
+
+pub(super) fn start_value(kind: ValueKind, value: f64) -> String {
     match kind {
         ValueKind::Real => number(value),
         ValueKind::Integer => format!("{value:.0}"),

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::FmiVersion;
-use super::description::{causality, identifier};
+use super::description::{causality, identifier, start_value};
 use super::picture::{COLOURS, LEGEND, picture};
 use super::reference::Reference;
 use super::xml::{escape, number};
@@ -135,7 +135,7 @@ fn table(html: &mut String, component: &Component) {
             escape(row.unit),
             start(row),
             row.range
-                .map(|(low, high)| format!("{} to {}", number(low), number(high)))
+                .map(|(low, high)| format!("{} to {}", value(row, low), value(row, high)))
                 .unwrap_or_default(),
             escape(&row.description),
         );
@@ -151,10 +151,15 @@ fn extents(row: &Variable) -> String {
     format!(" ({} values)", extents.join(" × "))
 }
 
+/// As the importer sees it: 1, true and 0.5.
+fn value(row: &Variable, number: f64) -> String {
+    start_value(row.kind, number)
+}
+
 fn start(row: &Variable) -> String {
     match &row.start {
         Start::Exact(values) => {
-            let values: Vec<_> = values.iter().map(|v| number(*v)).collect();
+            let values: Vec<_> = values.iter().map(|v| value(row, *v)).collect();
             values.join(" ")
         }
         Start::Empty => "\"\"".to_owned(),

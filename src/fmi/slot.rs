@@ -36,21 +36,19 @@ pub enum SlotError {
     TooLong(usize),
 }
 
-/// An empty slot, for the library's static.
+/// What stands behind the marker. The two must not stand side by side among a library's constants, where they would be a slot.
+const CAPACITY_BYTES: [u8; 8] = (CAPACITY as u64).to_le_bytes();
+
+/// An empty slot, for the library's static. When a program runs it is no value to have: threads with less stack than it are
+/// ordinary ones.
 #[must_use]
 pub const fn empty() -> [u8; SIZE] {
     let mut slot = [0; SIZE];
-    let mut i = 0;
-    while i < MARKER.len() {
-        slot[i] = MARKER[i];
-        i += 1;
-    }
-    let capacity = (CAPACITY as u64).to_le_bytes();
-    i = 0;
-    while i < capacity.len() {
-        slot[MARKER.len() + i] = capacity[i];
-        i += 1;
-    }
+    let (marker, rest) = slot.split_at_mut(MARKER.len());
+    marker.copy_from_slice(&MARKER);
+    rest.split_at_mut(CAPACITY_BYTES.len())
+        .0
+        .copy_from_slice(&CAPACITY_BYTES);
     slot
 }
 
@@ -63,9 +61,7 @@ pub fn fill(library: &mut [u8], text: &str) -> Result<(), SlotError> {
         return Err(SlotError::TooLong(text.len()));
     }
     // The marker alone may stand among a library's constants; a slot has its capacity behind it.
-    let start = empty();
-    let start = &start[..MARKER.len() + 8];
-    let found: Vec<usize> = memory_find(library, start);
+    let found: Vec<usize> = memory_find(library, &[&MARKER[..], &CAPACITY_BYTES].concat());
     let &[at] = found.as_slice() else {
         return Err(SlotError::Count(found.len()));
     };
@@ -84,7 +80,7 @@ pub fn fill(library: &mut [u8], text: &str) -> Result<(), SlotError> {
 /// # Errors
 /// [`SlotError::Empty`], [`SlotError::Damaged`].
 pub fn length(header: &[u8; HEADER]) -> Result<usize, SlotError> {
-    if header[..40] != empty()[..40] {
+    if header[..32] != MARKER || header[32..40] != CAPACITY_BYTES {
         return Err(SlotError::Damaged);
     }
     let mut bytes = [0; 8];

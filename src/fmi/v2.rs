@@ -1,8 +1,9 @@
 //! The FMI 2.0 document: scalars only, model structure by place in the list.
 
 use super::description::{
-    Enumeration, VALIDITY, enumeration, head, identifier, is_initial_unknown, is_output,
-    variable_head, variable_value, write_experiment, write_log_categories, write_units,
+    Enumeration, VALIDITY, enumeration, head, identifier, is_initial_unknown,
+    is_known_to_initialisation, is_output, variable_head, variable_value, write_experiment,
+    write_log_categories, write_units,
 };
 use super::xml::{Attributes, Xml};
 use super::{FmiVersion, capabilities};
@@ -99,10 +100,17 @@ fn write_type(xml: &mut Xml, enumeration: &Enumeration) {
 /// Outputs depend on no input at the same instant: they are sampled at the end of a step.
 fn write_structure(xml: &mut Xml, rows: &[&Variable]) {
     xml.begin("ModelStructure", &vec![]);
-    let independent = ("dependencies", String::new());
-    write_unknowns(xml, "Outputs", rows, is_output, Some(independent));
-    write_unknowns(xml, "InitialUnknowns", rows, is_initial_unknown, None);
+    write_unknowns(xml, "Outputs", rows, is_output, "");
+    let known = places(rows, is_known_to_initialisation).map(|place| place.to_string());
+    let known = known.collect::<Vec<_>>().join(" ");
+    write_unknowns(xml, "InitialUnknowns", rows, is_initial_unknown, &known);
     xml.end();
+}
+
+/// Places of rows in the list of variables, from 1.
+fn places(rows: &[&Variable], wanted: fn(&Variable) -> bool) -> impl Iterator<Item = usize> {
+    let places = (1_usize..).zip(rows);
+    places.filter_map(move |(place, row)| wanted(row).then_some(place))
 }
 
 fn write_unknowns(
@@ -110,20 +118,21 @@ fn write_unknowns(
     list: &'static str,
     rows: &[&Variable],
     wanted: fn(&Variable) -> bool,
-    dependencies: Option<(&'static str, String)>,
+    dependencies: &str,
 ) {
-    let mut places = (1_usize..)
-        .zip(rows)
-        .filter(|(_, row)| wanted(row))
-        .peekable();
+    let mut places = places(rows, wanted).peekable();
     if places.peek().is_none() {
         return;
     }
     xml.begin(list, &vec![]);
-    for (place, _) in places {
-        let mut unknown = vec![("index", place.to_string())];
-        unknown.extend(dependencies.clone());
-        xml.leaf("Unknown", &unknown);
+    for place in places {
+        xml.leaf(
+            "Unknown",
+            &vec![
+                ("index", place.to_string()),
+                ("dependencies", dependencies.to_owned()),
+            ],
+        );
     }
     xml.end();
 }

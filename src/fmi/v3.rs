@@ -1,8 +1,9 @@
 //! The FMI 3.0 document: arrays and their scalar elements, model structure by value reference.
 
 use super::description::{
-    Enumeration, VALIDITY, enumeration, head, identifier, is_initial_unknown, is_output,
-    variable_head, variable_value, write_experiment, write_log_categories, write_units,
+    Enumeration, VALIDITY, enumeration, head, identifier, is_initial_unknown,
+    is_known_to_initialisation, is_output, variable_head, variable_value, write_experiment,
+    write_log_categories, write_units,
 };
 use super::xml::{Attributes, Xml};
 use super::{FmiVersion, capabilities};
@@ -103,10 +104,16 @@ fn write_structure(xml: &mut Xml, table: &VariableTable) {
             ],
         );
     }
+    let known = table.rows().iter();
+    let known = known.filter(|row| is_known_to_initialisation(row));
+    let known: Vec<_> = known.map(|row| row.reference.to_string()).collect();
     for row in table.rows().iter().filter(|row| is_initial_unknown(row)) {
         xml.leaf(
             "InitialUnknown",
-            &vec![("valueReference", row.reference.to_string())],
+            &vec![
+                ("valueReference", row.reference.to_string()),
+                ("dependencies", known.join(" ")),
+            ],
         );
     }
     xml.end();

@@ -92,6 +92,24 @@ pub fn quote(text: &str) -> String {
     format!("{shown:?}")
 }
 
+/// A number for a message: the shortest text that reads as it, with an exponent where zeros would fill the line.
+#[must_use]
+pub fn shown(number: f64) -> String {
+    let size = number.abs();
+    if size != 0.0 && size.is_finite() && !(1e-4..1e15).contains(&size) {
+        format!("{number:e}")
+    } else {
+        format!("{number}")
+    }
+}
+
+/// A bound for a message: as [`shown`], but for the rounding of a product (3.75, not 3.7499999999999996).
+#[must_use]
+pub fn shown_bound(number: f64) -> String {
+    let rounded = format!("{number:.14e}").parse();
+    shown(rounded.unwrap_or(number))
+}
+
 fn with_article(name: &str) -> String {
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) {
         "an"
@@ -119,6 +137,24 @@ fn split(text: &str) -> Option<(f64, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_short_in_messages() {
+        for (number, text) in [
+            (1e300, "1e300"),
+            (-5e-324, "-5e-324"),
+            (0.0, "0"),
+            (0.1 + 0.2, "0.30000000000000004"),
+            (1_700_000_000.01, "1700000000.01"),
+            (f64::NAN, "NaN"),
+            (f64::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(shown(number), text);
+        }
+        let bounds = [3.749_999_999_999_999_6, 0.1, f64::MAX, 1.0 / 3.0];
+        let texts = ["3.75", "0.1", "1.79769313486232e308", "0.333333333333333"];
+        assert_eq!(bounds.map(shown_bound), texts);
+    }
 
     #[test]
     fn every_unit_reads_as_its_si_value() {

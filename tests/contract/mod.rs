@@ -53,6 +53,7 @@ pub(crate) type Factory<'a> = &'a dyn Fn(&Scene) -> Box<dyn Driver>;
 pub(crate) fn check_all(make: Factory, scene: &Scene) {
     let stage = Stage::new(make, scene);
     refusals::refused_calls_leave_no_trace(&stage);
+    refusals::far_from_zero_steps_are_as_long_as_told(&stage);
     refusals::bad_states_are_refused(&stage);
     refusals::sets_apply_all_or_nothing(&stage);
     sameness::restored_instances_go_on_with_the_same_bits(&stage);

@@ -42,7 +42,7 @@ fn wrong_calls() -> Vec<(Place, Call, &'static str)> {
         (Stepping, |d, s| d.do_step(2.0 * s.step(), -s.step()), "allowed a finite step above 0 s"),
         (Stepping, |d, s| d.do_step(2.0 * s.step(), f64::NAN), "do_step: h: found NaN s"),
         (Stepping, |d, s| d.do_step(2.0 * s.step(), f64::INFINITY), "do_step: h: found inf s"),
-        (Stepping, |d, s| d.do_step(2.0 * s.step(), 1e-300), "allowed a step that changes the time"),
+        (Stepping, |d, s| d.do_step(2.0 * s.step(), 1e-300), "do_step: t + h: found"),
         (Stepping, |d, s| d.do_step(2.0 * s.step(), 5e-324), "allowed a finite step above 0 s, not denormal"),
         (Stepping, |d, s| d.do_step(f64::INFINITY, s.step()), "do_step: t: found inf s"),
         (Stepping, |d, s| d.set(&[s.reference("solver.resolution_scale")], &[2.0]), "set of a fixed parameter (solver.resolution_scale) is not allowed in mode Stepping; allowed in Instantiated or Initialization"),
@@ -52,6 +52,9 @@ fn wrong_calls() -> Vec<(Place, Call, &'static str)> {
         (Stepping, |d, s| d.do_step(2.0 * s.step(), 20.0), "allowed a step that ends by 10 s, the stop time"),
         (Stepping, |d, s| d.set(&[s.gate()], &[f64::NAN]), "found NaN, allowed a number from 0 to 1"),
         (Stepping, |d, s| d.set(&[s.gate()], &[f64::INFINITY]), "found inf, allowed a number from 0 to 1"),
+        (Stepping, |d, s| d.set(&[s.gate()], &[1e300]), "found 1e300, allowed a number from 0 to 1"),
+        (Stepping, |d, s| d.do_step(-1e300, s.step()), "do_step: t: found -1e300 s"),
+        (Stepping, |d, s| d.do_step(2.0 * s.step(), 5e-324), "do_step: h: found 5e-324 s"),
         (Stepping, |d, s| d.set(&[s.gate()], &[1.5]), "found 1.5, allowed a number from 0 to 1"),
         (Stepping, |d, s| d.set(&[s.gate()], &[-0.1]), "found -0.1, allowed a number from 0 to 1"),
         (Stepping, |d, s| d.set(&[s.output()], &[0.5]), "found an output, allowed inputs and parameters"),
@@ -184,4 +187,23 @@ pub(crate) fn sets_apply_all_or_nothing(stage: &Stage) {
     }
     driver.set(&[gate, threads], &[0.25, 2.0]).unwrap();
     assert_eq!(driver.get(&[threads, gate], 2).unwrap(), [2.0, 0.25]);
+}
+
+/// Far from 0 a step still begins and ends where it is told to, to a thousandth of its length.
+pub(crate) fn far_from_zero_steps_are_as_long_as_told(stage: &Stage) {
+    let (start, h) = (1e6, stage.step());
+    let mut driver = stage.instance();
+    driver.enter_initialization(start, Some(start + h)).unwrap();
+    driver.exit_initialization().unwrap();
+    for (t, h, expected) in [
+        (start + 0.01 * h, h, "do_step: t: found"),
+        (start - 0.01 * h, h, "do_step: t: found"),
+        (start, 1.01 * h, "the stop time"),
+    ] {
+        match driver.do_step(t, h) {
+            Err(Refusal::Message(message)) => assert!(message.contains(expected), "{message}"),
+            other => panic!("{other:?}, expected {expected}"),
+        }
+    }
+    driver.do_step(start + 1e-4 * h, h).unwrap();
 }

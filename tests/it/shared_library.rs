@@ -363,6 +363,51 @@ fn a_client_in_c_steps_saves_and_goes_on_with_the_same_bits() {
     );
 }
 
+/// The library with a scene inside, as an FMU of FMI 3 has it, and what `tests/c/environment.c` is told: token and references.
+fn packed(folder: &Path) -> (Vec<String>, [String; 4]) {
+    let scene = sandgate::scene::load(&silo()).expect("it loads");
+    // As importers have it: from the description of a component of the scene as it was packed.
+    let scene =
+        sandgate::scene::parse("resources/scene.toml", &scene.source).expect("it is a scene");
+    let component = sandgate::component::Component::new(&scene).expect("it builds");
+    let mut bytes = fs::read(library()).expect("it was built");
+    sandgate::fmi::slot::fill(&mut bytes, &scene.source).expect("it fits");
+    fs::write(folder.join("libpacked.so"), bytes).expect("the scratch folder is writable");
+    let folder = folder.display();
+    let link = vec![
+        format!("-L{folder}"),
+        format!("-Wl,-rpath,{folder}"),
+        "-lpacked".to_owned(),
+        "-lm".to_owned(),
+        "-lpthread".to_owned(),
+        format!("-I{}", fmi_headers().display()),
+    ];
+    let names = [
+        "solver.threads",
+        "solver.resolution_scale",
+        "gate.main.opening",
+    ];
+    let [threads, resolution, opening] = names.map(|name| {
+        let row = component.variables().by_name(name).expect("it is there");
+        row.reference.to_string()
+    });
+    let token = sandgate::fmi::token(&component, sandgate::fmi::FmiVersion::V3);
+    (link, [token, threads, resolution, opening])
+}
+
+#[test]
+fn an_importer_keeps_its_floating_point_environment_and_gets_the_same_bits() {
+    let folder = scratch("environment");
+    let (link, told) = packed(&folder);
+    let link: Vec<&str> = link.iter().map(String::as_str).collect();
+    let program = compiled("tests/c/environment.c", &folder, &link);
+    run(
+        "tests/c/environment.c",
+        Command::new(&program).args(told),
+        "it says what went wrong; a signal is a trap that was sprung inside the library",
+    );
+}
+
 #[test]
 fn a_client_in_c_leaves_its_memory_alone_and_nothing_behind() {
     let link = link();

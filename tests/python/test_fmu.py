@@ -52,6 +52,10 @@ def test_the_description_is_complete(path):
     assert cs.canGetAndSetFMUstate and cs.canSerializeFMUstate and cs.canHandleVariableCommunicationStepSize
     assert not (cs.needsExecutionTool or cs.canBeInstantiatedOnlyOncePerProcess)
     assert all(unknown.dependencies == [] for unknown in description.outputs)
+    assert description.initialUnknowns
+    for unknown in description.initialUnknowns:
+        assert unknown.dependencies, unknown.variable.name
+        assert {(v.causality, v.variability) for v in unknown.dependencies} == {("parameter", "fixed")}
 
 
 @both
@@ -65,6 +69,7 @@ def test_the_archive_is_plain(version):
             assert archive.read("resources/scene.toml") == file.read()
         page = archive.read("documentation/index.html").decode()
         assert "gauge.surface.depth[1]" in page
+        assert "<td>1</td><td>0 to 256</td><td>threads" in page and "<td>false</td><td>false to true</td>" in page
         assert b"Apache License" in archive.read("documentation/licenses/license.txt")
 
 

@@ -31,6 +31,12 @@ const H: f64 = 1.0 / 256.0;
 /// What a call answers: whether it did what it was asked.
 type Call = fn(&Held, &Names) -> bool;
 
+/// Of a status that FMI 2 has no value for.
+fn discarded(status: Status) -> bool {
+    assert_eq!(status, Status::Discard);
+    false
+}
+
 fn ok(status: Status) -> bool {
     assert!(
         status == Status::Ok || status == Status::Error,

@@ -2,6 +2,7 @@
 
 use std::ffi::{c_char, c_void};
 use std::ptr;
+use std::sync::Mutex;
 
 use sandgate::component::{ValueKind, VariableTable};
 use sandgate::fmi::FmiVersion;
@@ -275,4 +276,22 @@ impl Driver for Fmi2 {
     fn terminate(&mut self) -> Outcome<()> {
         self.outcome(unsafe { fmi2Terminate(self.instance) })
     }
+}
+
+#[test]
+fn a_blank_name_is_refused_with_a_message() {
+    let token = pack(&super::scene(), FmiVersion::V2);
+    let messages: Mutex<Vec<String>> = Mutex::default();
+    let callbacks = Callbacks {
+        logger,
+        allocate: ptr::null(),
+        free: ptr::null(),
+        finished: ptr::null(),
+        environment: (&raw const messages).cast_mut().cast(),
+    };
+    let (name, functions) = (c"  ".as_ptr(), &raw const callbacks);
+    let made = unsafe { fmi2Instantiate(name, 1, token.as_ptr(), ptr::null(), functions, 0, 1) };
+    assert!(made.is_null());
+    let told = messages.lock().expect("no panic inside").concat();
+    assert!(told.contains("instanceName: found \"  \""), "{told}");
 }

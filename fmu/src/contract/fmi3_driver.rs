@@ -1,6 +1,6 @@
 //! A driver over `fmi3*`.
 
-use std::ffi::{c_char, c_void};
+use std::ffi::{CStr, c_char, c_void};
 use std::ptr;
 use std::sync::Mutex;
 
@@ -285,14 +285,14 @@ impl Driver for Fmi3 {
 }
 
 #[test]
-fn a_wrong_token_kind_or_event_mode_is_refused_with_a_message() {
+fn a_wrong_name_token_kind_or_event_mode_is_refused_with_a_message() {
     let scene = super::scene();
     let token = pack(&scene, FmiVersion::V3);
     let messages: Mutex<Vec<String>> = Mutex::default();
     let environment = (&raw const messages).cast_mut().cast();
-    let make = |token: *const c_char, events: bool| unsafe {
+    let make = |name: &CStr, token: *const c_char, events: bool| unsafe {
         fmi3InstantiateCoSimulation(
-            c"instance".as_ptr(),
+            name.as_ptr(),
             token,
             ptr::null(),
             false,
@@ -306,20 +306,33 @@ fn a_wrong_token_kind_or_event_mode_is_refused_with_a_message() {
             None,
         )
     };
-    for (token, events, expected) in [
+    for (name, token, events, expected) in [
         (
+            c" \t",
+            token.as_ptr(),
+            false,
+            "instanceName: found \" \\t\", allowed a name with a visible character",
+        ),
+        (
+            c"instance",
             c"{another}".as_ptr(),
             false,
             "instantiation token: found {another}, expected {",
         ),
-        (ptr::null(), false, "instantiationToken: found NULL"),
         (
+            c"instance",
+            ptr::null(),
+            false,
+            "instantiationToken: found NULL",
+        ),
+        (
+            c"instance",
             token.as_ptr(),
             true,
             "eventModeUsed: found true, allowed false",
         ),
     ] {
-        assert!(make(token, events).is_null());
+        assert!(make(name, token, events).is_null());
         let told = messages
             .lock()
             .expect("no panic inside")
@@ -327,7 +340,7 @@ fn a_wrong_token_kind_or_event_mode_is_refused_with_a_message() {
             .expect("a message");
         assert!(told.contains(expected), "{told}");
     }
-    let instance = make(token.as_ptr(), false);
+    let instance = make(c"instance", token.as_ptr(), false);
     assert!(!instance.is_null());
     unsafe { fmi3FreeInstance(instance) }
 }

@@ -71,6 +71,8 @@ struct Plan {
     end_at: Option<f64>,
     /// Calls what is forbidden there.
     misbehaves: bool,
+    /// Sets an input, though none was asked for.
+    sets_unasked: bool,
 }
 
 /// One call of the callback.
@@ -86,6 +88,7 @@ struct Seen {
 /// What the environment pointer points to.
 struct World {
     instance: *mut c_void,
+    gate: u32,
     plan: Plan,
     seen: Vec<Seen>,
     messages: Mutex<Vec<String>>,
@@ -117,6 +120,11 @@ extern "C" fn update(
         let status =
             unsafe { fmi3SetFloat64(instance, &raw const reference, 1, &raw const value, 1) };
         assert_eq!(status, 0, "{:?}", world.messages);
+    }
+    if plan.sets_unasked {
+        let (gate, shut) = (world.gate, 0.0);
+        let status = unsafe { fmi3SetFloat64(instance, &raw const gate, 1, &raw const shut, 1) };
+        assert_eq!(status, 3);
     }
     if plan.misbehaves {
         let (flag, last) = (ptr::null_mut(), ptr::null_mut());
@@ -167,6 +175,7 @@ impl Rig {
         let required: Vec<u32> = required.iter().map(|name| find(name)).collect();
         let mut world = Box::new(World {
             instance: ptr::null_mut(),
+            gate,
             plan: Plan { depth, ..plan },
             seen: Vec::new(),
             messages: Mutex::default(),
@@ -234,6 +243,12 @@ impl Rig {
         let status = unsafe { fmi3GetFloat64(c, &raw const reference, 1, &raw mut value, 1) };
         assert_eq!(status, 0, "{:?}", self.world.messages);
         value
+    }
+
+    /// Whether a message has this in it.
+    fn was_told(&self, part: &str) {
+        let messages = self.world.messages.lock().expect("no panic inside");
+        assert!(messages.iter().any(|m| m.contains(part)), "{messages:?}");
     }
 
     fn state(&self) -> Vec<u8> {
@@ -309,6 +324,7 @@ fn a_step_ends_early_only_if_allowed_and_then_exactly_there() {
     let mut at_once = Rig::new(&scene, wish(f64::NAN), true, &[], true);
     let (early, first) = at_once.step(0.0, h);
     assert!(early && first > 0.0 && first < h);
+    at_once.was_told("earlyReturnTime: found NaN s, allowed 0 s to");
     assert_eq!(at_once.world.seen.len(), 1);
     assert_eq!(at_once.world.seen[0].time.to_bits(), first.to_bits());
     assert!(at_once.world.seen[0].flags[3]);
@@ -324,6 +340,24 @@ fn a_step_ends_early_only_if_allowed_and_then_exactly_there() {
     // Beyond the end: the step's own end.
     let mut beyond = Rig::new(&scene, wish(2.0 * h), true, &[], true);
     assert_eq!(beyond.step(0.0, h), (false, h));
+    beyond.was_told(&format!("the step; it ends at {h} s"));
+}
+
+#[test]
+fn inputs_are_set_inside_a_step_only_if_that_was_asked_for() {
+    let scene = super::scene();
+    let mut plain = Rig::new(&scene, Plan::default(), false, &[], false);
+    let plan = Plan {
+        sets_unasked: true,
+        ..Plan::default()
+    };
+    let mut rig = Rig::new(&scene, plan, false, &READS, true);
+    let h = rig.h;
+    rig.step(0.0, h);
+    plain.step(0.0, h);
+    assert!(rig.world.seen.iter().all(|seen| !seen.flags[0]));
+    rig.was_told("fmi3SetFloat64: intermediateVariableSetRequested is false");
+    assert!(rig.state() == plain.state());
 }
 
 #[test]
@@ -359,7 +393,7 @@ fn other_calls_inside_an_update_are_refused_with_a_message() {
         misbehaves: true,
         ..Plan::default()
     };
-    let mut rude = Rig::new(&scene, plan, false, &READS, true);
+    let mut rude = Rig::new(&scene, plan, false, &["gate.sluice.opening"], true);
     let mut plain = Rig::new(&scene, Plan::default(), false, &[], false);
     let h = rude.h;
     rude.step(0.0, h);

@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use crate::access::{Flag, get, get_texts, output_derivatives, set, set_texts};
+use crate::access::{Above, Flag, get, get_texts, output_derivatives, set, set_texts};
 use crate::fault::{Fault, Status};
 use crate::guard::{Handle, In, Need, Out, Text};
 
@@ -155,7 +155,8 @@ pub(crate) extern "C" fn fmi2GetRealOutputDerivatives(
 ) -> Status {
     c.call("fmi2GetRealOutputDerivatives", Need::Sound, |i| {
         let (vr, order) = (vr.slice(n, "vr")?, order.slice(n, "order")?);
-        output_derivatives(i, vr, order, &mut value, n)
+        // Above the highest order that there is, a derivative is 0, says FMI 2.0.4, section 4.2.1.
+        output_derivatives(i, vr, order, Above::IsZero, &mut value, n)
     })
     .into()
 }

@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use crate::access::{Flag, get, get_texts, output_derivatives, set, set_texts};
+use crate::access::{Above, Flag, get, get_texts, output_derivatives, set, set_texts};
 use crate::fault::Status;
 use crate::guard::{Handle, In, Need, Out, Text};
 
@@ -162,7 +162,7 @@ pub(crate) extern "C" fn fmi3GetOutputDerivatives(
 ) -> Status {
     c.visit("fmi3GetOutputDerivatives", |i| {
         let (vr, orders) = (vr.slice(n, "valueReferences")?, orders.slice(n, "orders")?);
-        output_derivatives(i, vr, orders, &mut values, n_values)
+        output_derivatives(i, vr, orders, Above::IsRefused, &mut values, n_values)
     })
     .into()
 }

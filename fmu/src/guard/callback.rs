@@ -1,9 +1,10 @@
 //! The importer's functions: logger and intermediate update. Called only during a call, from the thread of that call, with
-//! the importer's own environment pointer.
+//! the importer's own environment pointer and arithmetic.
 
 use std::ffi::{CStr, c_char, c_void};
 
 use super::In;
+use super::arithmetic::outside;
 use super::border::Plain;
 use crate::fault::Status;
 
@@ -39,7 +40,7 @@ impl Logger2 {
         if let Some(logger) = self.0 {
             // SAFETY: the importer gave this function for this use; all texts end with a zero byte and outlive the
             // call; the message asks for no further arguments.
-            unsafe {
+            outside(|| unsafe {
                 logger(
                     environment,
                     name.as_ptr(),
@@ -47,7 +48,7 @@ impl Logger2 {
                     category.as_ptr(),
                     message.as_ptr(),
                 );
-            }
+            });
         }
     }
 }
@@ -70,7 +71,7 @@ impl PlainLogger {
         if let Some(logger) = self.0 {
             // SAFETY: the caller gave this function for this use; both texts end with a zero byte and outlive the
             // call.
-            unsafe { logger(user, category.as_ptr(), message.as_ptr()) }
+            outside(|| unsafe { logger(user, category.as_ptr(), message.as_ptr()) });
         }
     }
 }
@@ -94,7 +95,7 @@ impl Logger3 {
         if let Some(logger) = self.0 {
             // SAFETY: the importer gave this function for this use; both texts end with a zero byte and outlive the
             // call.
-            unsafe { logger(environment, status, category.as_ptr(), message.as_ptr()) }
+            outside(|| unsafe { logger(environment, status, category.as_ptr(), message.as_ptr()) });
         }
     }
 }
@@ -130,7 +131,7 @@ impl IntermediateUpdate3 {
         let update = self.0?;
         // SAFETY: the importer gave this function for this use; both places live until it returns. Reading is allowed
         // (third flag), the internal step is accepted (fourth).
-        unsafe {
+        outside(|| unsafe {
             update(
                 environment,
                 pause.time,
@@ -141,7 +142,7 @@ impl IntermediateUpdate3 {
                 (&raw mut requested).cast(),
                 &raw mut time,
             );
-        }
+        });
         (requested != 0).then_some(time)
     }
 }

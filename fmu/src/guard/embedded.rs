@@ -43,7 +43,7 @@ pub(crate) mod packed {
 
     /// From here on this thread's library holds this scene.
     pub(crate) fn pack(scene: &str) {
-        let mut library = slot::empty().to_vec();
+        let mut library = super::SLOT.to_vec();
         slot::fill(&mut library, scene).expect("the scene fits");
         SLOT.set(Some(library));
     }
@@ -58,5 +58,16 @@ mod tests {
         assert_eq!(embedded_scene(), Err(SlotError::Empty));
         packed::pack("name = \"x\"");
         assert_eq!(embedded_scene().as_deref(), Ok("name = \"x\""));
+    }
+
+    #[test]
+    fn a_scene_is_read_by_threads_with_little_stack() {
+        let thread = std::thread::Builder::new().stack_size(64 * 1024);
+        let thread = thread.spawn(|| {
+            packed::pack("name = \"x\"");
+            embedded_scene()
+        });
+        let read = thread.expect("it starts").join().expect("it ends");
+        assert_eq!(read.as_deref(), Ok("name = \"x\""));
     }
 }

@@ -6,6 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 use std::sync::atomic::{AtomicU8, Ordering};
 
+use super::arithmetic::inside;
 use crate::access::Values;
 use crate::fault::{Fault, Status};
 use crate::instance::Instance;
@@ -65,6 +66,49 @@ impl Slot {
         // the pointer until the door is OPEN again; VISITED makes this the only reference.
         unsafe { self.guest.get().as_mut() }.map(work)
     }
+
+    /// As [`Handle::call_with_door`].
+    fn enter<T>(
+        &self,
+        call: &'static str,
+        need: Need,
+        work: impl FnOnce(&mut Instance, &Door<'_>) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
+        let (acquire, relaxed) = (Ordering::Acquire, Ordering::Relaxed);
+        let entered = self.door.compare_exchange(FREE, BUSY, acquire, relaxed);
+        if entered.is_err() {
+            let fault = Fault::border(
+                "another call on this instance is running; an intermediate update may get and set numbers and get slopes of outputs only",
+            );
+            // The importer's logger is C; what panics here is ours.
+            let _ = shield(|| self.with_guest(|guest| guest.report(call, &fault)));
+            return Err(fault);
+        }
+        // SAFETY: the door was FREE and is BUSY now, so this is the only reference into the cell until it is FREE.
+        let instance = unsafe { &mut *self.instance.get() };
+        let result = guarded(instance, call, need, |instance| work(instance, &Door(self)));
+        self.door.store(FREE, Ordering::Release);
+        result
+    }
+
+    /// As [`Handle::visit`], while the door is open.
+    fn visit<T>(
+        &self,
+        call: &'static str,
+        work: impl FnOnce(&mut dyn Values) -> Result<T, Fault>,
+    ) -> Result<T, Fault> {
+        let visited = self.with_guest(|guest| {
+            let result = shield(|| work(guest)).unwrap_or_else(|how| {
+                guest.is_hurt = true;
+                Err(Fault::Broken(format!("broke down ({how})")))
+            });
+            if let Err(fault) = &result {
+                guest.report(call, fault);
+            }
+            result
+        });
+        visited.unwrap_or_else(|| Err(Fault::border("another call on this instance is running")))
+    }
 }
 
 /// Opens the door again when a visit is over, also by a panic: the step waits for it.
@@ -122,21 +166,7 @@ impl Handle {
         work: impl FnOnce(&mut Instance, &Door<'_>) -> Result<T, Fault>,
     ) -> Result<T, Fault> {
         let slot = self.slot(call)?;
-        let (acquire, relaxed) = (Ordering::Acquire, Ordering::Relaxed);
-        let entered = slot.door.compare_exchange(FREE, BUSY, acquire, relaxed);
-        if entered.is_err() {
-            let fault = Fault::border(
-                "another call on this instance is running; an intermediate update may get and set numbers and get slopes of outputs only",
-            );
-            // The importer's logger is C; what panics here is ours.
-            let _ = shield(|| slot.with_guest(|guest| guest.report(call, &fault)));
-            return Err(fault);
-        }
-        // SAFETY: the door was FREE and is BUSY now, so this is the only reference into the cell until it is FREE.
-        let instance = unsafe { &mut *slot.instance.get() };
-        let result = guarded(instance, call, need, |instance| work(instance, &Door(slot)));
-        slot.door.store(FREE, Ordering::Release);
-        result
+        inside(|| slot.enter(call, need, work))
     }
 
     /// Runs one call that gets or sets numbers: between other calls, or while a step has the door open.
@@ -149,17 +179,7 @@ impl Handle {
         if slot.door.load(Ordering::Acquire) != OPEN {
             return self.call(call, Need::Sound, |instance| work(instance));
         }
-        let visited = slot.with_guest(|guest| {
-            let result = shield(|| work(guest)).unwrap_or_else(|how| {
-                guest.is_hurt = true;
-                Err(Fault::Broken(format!("broke down ({how})")))
-            });
-            if let Err(fault) = &result {
-                guest.report(call, fault);
-            }
-            result
-        });
-        visited.unwrap_or_else(|| Err(Fault::border("another call on this instance is running")))
+        inside(|| slot.visit(call, work))
     }
 
     fn slot(&self, call: &str) -> Result<&Slot, Fault> {
@@ -188,7 +208,7 @@ impl Handle {
         if entered.is_ok() {
             // SAFETY: `new` made it with Box::into_raw, and the caller promises not to use the pointer again.
             let slot = unsafe { Box::from_raw(self.0) };
-            let _ = shield(move || slot.instance.into_inner().finish("freed"));
+            let _ = inside(|| shield(move || slot.instance.into_inner().finish("freed")));
         }
     }
 }

@@ -4,8 +4,10 @@
 //! comes from a C caller, whose side of the contract is written in the headers (a pointer is NULL or points to as many
 //! elements as said, for the time of the call). So using one is safe Rust, and the other files of this package need
 //! no `unsafe` but the attribute that exports a name. `handle` keeps instances, `state` saved states, `callback` the
-//! importer's functions, `records` the structures of the C interface, `embedded` reads the scene inside the library.
+//! importer's functions, `arithmetic` how the thread computes on either side, `records` the structures of the C interface,
+//! `embedded` reads the scene inside the library.
 
+mod arithmetic;
 mod border;
 mod callback;
 mod embedded;
@@ -13,6 +15,7 @@ mod handle;
 mod records;
 mod state;
 
+pub(crate) use arithmetic::inside;
 pub(crate) use border::{In, Out, Plain, Text};
 pub(crate) use callback::{
     Callbacks2, Environment, IntermediateUpdate3, Logger3, Pause, PlainLogger, UnusedCallback,
