@@ -298,14 +298,14 @@ impl<const D: usize> Solver<D> {
 
     /// Pieces that touch no wall get back the momentum of v* exactly: the solve keeps it only to its tolerance.
     fn restore_momentum(&self, state: &State<D>, velocity: &mut [Vector<D>]) {
-        if self.lists.free_pieces == 0 {
+        let touching = self.lists.touching();
+        if !touching.contains(&false) {
             return;
         }
         // Rings keep momentum along their axis only.
         let first = usize::from(self.geometry.is_axisymmetric());
-        let mut lost = vec![([0.0; D], 0.0); self.lists.free_pieces];
+        let mut lost = vec![([0.0; D], 0.0); touching.len()];
         for (i, piece) in self.lists.pieces.iter().enumerate() {
-            let Some(piece) = piece else { continue };
             let m = state.grains.mass[i];
             let (momentum, mass) = &mut lost[*piece as usize];
             for k in first..D {
@@ -314,7 +314,9 @@ impl<const D: usize> Solver<D> {
             *mass += m;
         }
         for (i, piece) in self.lists.pieces.iter().enumerate() {
-            let Some(piece) = piece else { continue };
+            if touching[*piece as usize] {
+                continue;
+            }
             let (momentum, mass) = &lost[*piece as usize];
             for k in first..D {
                 velocity[i][k] += momentum[k] / mass;

@@ -16,10 +16,10 @@ use super::pair::Block;
 pub(super) struct Lists<const D: usize> {
     /// Rows in chunks of `CHUNK`, with their neighbours and (per step) pair coefficients.
     pub(super) blocks: Vec<Block<D>>,
-    /// Piece of each particle: connected through lists; `None` if the piece touches a wall.
-    pub(super) pieces: Vec<Option<u32>>,
-    /// Number of pieces that touch no wall.
-    pub(super) free_pieces: usize,
+    /// Piece of each particle: connected through lists.
+    pub(super) pieces: Vec<u32>,
+    /// Number of pieces.
+    pub(super) piece_count: usize,
     /// Radius of the lists: support + skin [m].
     reach: f64,
     skin: f64,
@@ -31,7 +31,7 @@ impl<const D: usize> Lists<D> {
         Self {
             blocks: Vec::new(),
             pieces: Vec::new(),
-            free_pieces: 0,
+            piece_count: 0,
             reach: support + skin,
             skin,
         }
@@ -119,7 +119,7 @@ impl<const D: usize> Lists<D> {
         self.find_pieces(n);
     }
 
-    /// Union-find over list pairs: pieces that touch no wall keep their momentum exactly (see `viscous`).
+    /// Union-find over list pairs.
     fn find_pieces(&mut self, n: usize) {
         let mut parent: Vec<u32> = (0..n as u32).collect();
         fn root(parent: &mut [u32], mut i: u32) -> u32 {
@@ -129,11 +129,9 @@ impl<const D: usize> Lists<D> {
             }
             i
         }
-        let mut touches = vec![false; n];
         for (c, block) in self.blocks.iter().enumerate() {
             for row in 0..block.rows() {
                 let i = (c * CHUNK + row) as u32;
-                touches[i as usize] = !block.wall_row(row).is_empty();
                 let mut own = root(&mut parent, i);
                 for &j in block.row(row).iter().filter(|&&j| j < i) {
                     // Nearly all are in the piece already.
@@ -148,26 +146,28 @@ impl<const D: usize> Lists<D> {
                 }
             }
         }
-        let mut walled = vec![false; n];
-        for i in 0..n {
-            let r = root(&mut parent, i as u32) as usize;
-            walled[r] |= touches[i];
-        }
         let mut number = vec![u32::MAX; n];
-        self.free_pieces = 0;
+        self.piece_count = 0;
         self.pieces.clear();
         for i in 0..n {
             let r = root(&mut parent, i as u32) as usize;
-            if walled[r] {
-                self.pieces.push(None);
-                continue;
-            }
             if number[r] == u32::MAX {
-                number[r] = self.free_pieces as u32;
-                self.free_pieces += 1;
+                number[r] = self.piece_count as u32;
+                self.piece_count += 1;
             }
-            self.pieces.push(Some(number[r]));
+            self.pieces.push(number[r]);
         }
+    }
+
+    /// Which pieces see a wall now. Lists reach further than what is seen: a piece may be near a wall that gives it nothing.
+    pub(super) fn touching(&self) -> Vec<bool> {
+        let mut touching = vec![false; self.piece_count];
+        for (c, block) in self.blocks.iter().enumerate() {
+            for row in &block.wall_rows {
+                touching[self.pieces[c * CHUNK + row.row as usize] as usize] = true;
+            }
+        }
+        touching
     }
 }
 
