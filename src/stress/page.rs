@@ -213,7 +213,8 @@ fn faults() -> String {
         ),
         (
             "more particles than memory",
-            "refused before any memory is asked for: key, line, how many particles, at most 5e7 (and 1e9 cells), use a coarser spacing",
+            "more than 5e7 (or 1e9 cells) are refused before any memory is asked for: key, line, how many particles, use a coarser spacing; fewer, where \
+             what they take (about 5 kB each in the plane, 12 kB in space) is not to be had, before the first of them is made",
         ),
         (
             "a disk that is full while the log is written",
