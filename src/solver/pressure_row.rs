@@ -215,7 +215,7 @@ impl<'s, L: Lanes, const D: usize, const PLAIN: bool> PressureRow<'s, L, D, PLAI
         }
     }
 
-    /// Artificial viscosity, [A] eq. 38: (v.x)/r^2 = (v.g) F/|g|^2, on approaching and receding pairs alike.
+    /// Artificial viscosity, [A] eq. 38, c the mean of both: (v.x)/r^2 = (v.g) F/|g|^2, on approaching and receding pairs alike.
     #[inline(always)]
     fn damp(&mut self, near: &Near<'_, L, D>) {
         if PLAIN || !(self.damp > 0.0 || self.own_damping > 0.0) {
@@ -228,6 +228,16 @@ impl<'s, L: Lanes, const D: usize, const PLAIN: bool> PressureRow<'s, L, D, PLAI
             along += (self.splat(grains.velocity[i][k]) - vj) * near.g[k];
         }
         let mut alpha = self.splat(self.damp);
+        let materials = &self.solver.materials;
+        if self.damp > 0.0 && materials.iter().any(|m| m.sound_speed.is_some()) {
+            // That of the pair, or what one loses the other does not gain.
+            let of = |m: usize| {
+                let material = &materials[grains.phase[j[m] as usize] as usize];
+                self.solver.sound_speed_of(material)
+            };
+            let mean = self.splat(self.c0) + Four::gather(self.lanes, of);
+            alpha = alpha * mean * self.splat(0.5 / self.c0);
+        }
         if self.own_damping > 0.0 {
             // That of its own kind.
             let same =

@@ -191,7 +191,7 @@ impl<'a> Witness<'a> {
         if let Some((miss, scale)) = found.momentum
             && !fell_asleep
         {
-            // What the solve leaves goes to the walls (solver/reactions.rs); where materials meet a part of it still does not.
+            // What the solve leaves goes to the walls (solver/reactions.rs), but for a small part in a few scenes.
             let steps = done.report.substeps as f64;
             let allowed = if self.balance.has_walls() {
                 MOMENTUM * scale

@@ -138,6 +138,25 @@ fn an_isolated_body_keeps_its_momentum_at_a_loose_tolerance() {
     );
 }
 
+/// Two materials with sound speeds of their own meet: artificial viscosity is that of the pair.
+#[test]
+fn materials_of_other_sound_speeds_keep_their_momentum() {
+    let mut scene = block([0.0, 0.0]);
+    scene.numerics.artificial_viscosity = 0.05;
+    let mut stiff = scene.materials[0].clone();
+    stiff.name = "stiff".to_owned();
+    stiff.material.sound_speed = Some(35.0);
+    scene.materials.push(stiff);
+    scene.bodies[1].material = 1;
+    let (start, end) = run(&scene, 0.05);
+    let ((before, scale), (after, _)) = (momentum(&start), momentum(&end));
+    for k in 0..2 {
+        let drift = (after[k] - before[k]).abs() / scale;
+        println!("axis {k}: {drift:.1e}");
+        assert!(drift < 1e-12, "axis {k}: {drift}");
+    }
+}
+
 /// Artificial viscosity and scheme `paper_a` act pair by pair too.
 #[test]
 fn every_scheme_keeps_momentum_and_loses_energy() {
