@@ -106,8 +106,10 @@ pub fn shown(number: f64) -> String {
 /// A bound for a message: as [`shown`], but for the rounding of a product (3.75, not 3.7499999999999996).
 #[must_use]
 pub fn shown_bound(number: f64) -> String {
-    let rounded = format!("{number:.14e}").parse();
-    shown(rounded.unwrap_or(number))
+    let rounded = format!("{number:.14e}").parse().ok();
+    // The largest double is rounded to more than it.
+    let finite = rounded.filter(|r: &f64| r.is_finite());
+    shown(finite.unwrap_or(number))
 }
 
 fn with_article(name: &str) -> String {
@@ -152,7 +154,7 @@ mod tests {
             assert_eq!(shown(number), text);
         }
         let bounds = [3.749_999_999_999_999_6, 0.1, f64::MAX, 1.0 / 3.0];
-        let texts = ["3.75", "0.1", "1.79769313486232e308", "0.333333333333333"];
+        let texts = ["3.75", "0.1", "1.7976931348623157e308", "0.333333333333333"];
         assert_eq!(bounds.map(shown_bound), texts);
     }
 
