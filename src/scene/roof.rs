@@ -22,7 +22,7 @@ struct Place<const D: usize> {
     number: usize,
     x: [f64; D],
     density: f64,
-    /// That of its depth, and what it comes to under a roof [Pa].
+    /// That of its depth, and what it comes to under a roof; asked for once a scene is known to have one [Pa].
     pressure: f64,
 }
 
@@ -37,6 +37,9 @@ pub(super) fn pressures_under_roofs<const D: usize>(
     let Some((mut places, roofed)) = places else {
         return found;
     };
+    for place in &mut places {
+        place.pressure = loads.above(place.body, &lattices[place.body].points[place.number]);
+    }
     let neighbours = neighbours(loads, &places, &roofed);
     let joined = joined(&roofed, &neighbours);
     balance(loads, &mut places, &joined, &neighbours);
@@ -81,7 +84,7 @@ fn roofed_places<const D: usize>(
                 number,
                 x: std::array::from_fn(|k| point[k]),
                 density,
-                pressure: loads.above(body, point),
+                pressure: 0.0,
             });
         }
     }

@@ -1,4 +1,4 @@
-//! Neighbour lists with a skin, sorted particles, and the pieces that touch no wall.
+//! Neighbour lists with a skin, sorted particles, and the pieces that hang together.
 //!
 //! Lists are built from `Grains::listed` (the positions at that moment), so that a restored state rebuilds the same
 //! lists in the same order. They stay valid while nothing has moved more than the skin allows, relative to the mean

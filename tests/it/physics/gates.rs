@@ -101,7 +101,7 @@ box = {{ lower = [0, 0, {}], upper = [1, {}] }}
 }
 
 /// Each wall of a tank bears what hydrostatics says, whoever has the points of its edges, and nothing along itself: a gate lacked 6 % of its
-/// thrust at ten rows, in space 17 %.
+/// thrust at ten rows, in space 16 %.
 #[test]
 fn a_gate_bears_the_thrust_of_the_water() {
     for (dimension, width) in [(2, 1.0), (3, 0.5)] {
