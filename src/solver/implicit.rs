@@ -43,6 +43,8 @@ pub(super) struct Viscous<const D: usize> {
     pub(super) quick: Vec<bool>,
     /// What of the wall friction of each of its rows does not follow the velocity [Pa].
     pub(super) held: Vec<Vector<D>>,
+    /// Pieces of the lists that walls push in this step.
+    pub(super) touching: Vec<bool>,
 }
 
 impl<const D: usize> Viscous<D> {
@@ -88,7 +90,7 @@ impl<const D: usize> Solver<D> {
             let current = &work.current;
             self.workers
                 .each(&mut work.velocity, |i, v| *v = current[i].velocity());
-            self.restore_momentum(state, &mut work.velocity);
+            self.restore_momentum(state, &mut work);
         }
         self.viscous = work;
         result
@@ -294,34 +296,6 @@ impl<const D: usize> Solver<D> {
         let scale = steps * (moved.sqrt() - fallen).max(0.0) + RESTING * fallen;
         // The floor is the rounding of velocities that are all the same.
         self.numerics.solver_tolerance * scale + 1e-15 * self.numerics.sound_speed * total
-    }
-
-    /// Pieces that touch no wall get back the momentum of v* exactly: the solve keeps it only to its tolerance.
-    fn restore_momentum(&self, state: &State<D>, velocity: &mut [Vector<D>]) {
-        let touching = self.lists.touching();
-        if !touching.contains(&false) {
-            return;
-        }
-        // Rings keep momentum along their axis only.
-        let first = usize::from(self.geometry.is_axisymmetric());
-        let mut lost = vec![([0.0; D], 0.0); touching.len()];
-        for (i, piece) in self.lists.pieces.iter().enumerate() {
-            let m = state.grains.mass[i];
-            let (momentum, mass) = &mut lost[*piece as usize];
-            for k in first..D {
-                momentum[k] += m * (self.prediction[i].velocity[k] - velocity[i][k]);
-            }
-            *mass += m;
-        }
-        for (i, piece) in self.lists.pieces.iter().enumerate() {
-            if touching[*piece as usize] {
-                continue;
-            }
-            let (momentum, mass) = &lost[*piece as usize];
-            for k in first..D {
-                velocity[i][k] += momentum[k] / mass;
-            }
-        }
     }
 }
 

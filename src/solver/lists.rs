@@ -9,7 +9,7 @@ use crate::math::{Arch, CHUNK, Four, LANES, Lanes, Vector, Workers, dot, in_lane
 use crate::state::Grains;
 
 use super::grid::{Grid, Near, Periodic};
-use super::pair::Block;
+use super::pair::{Block, WallRow};
 
 /// Neighbour lists of one state.
 #[derive(Debug)]
@@ -159,12 +159,16 @@ impl<const D: usize> Lists<D> {
         }
     }
 
-    /// Which pieces see a wall now. Lists reach further than what is seen: a piece may be near a wall that gives it nothing.
-    pub(super) fn touching(&self) -> Vec<bool> {
+    /// Which pieces are pushed by a wall now: those with a particle that sees one which, asked about, `gives` it something.
+    ///
+    /// Lists reach further than what is seen: a piece may be near a wall that gives it nothing.
+    pub(super) fn touching(&self, gives: impl Fn(usize, &WallRow<D>) -> bool) -> Vec<bool> {
         let mut touching = vec![false; self.piece_count];
         for (c, block) in self.blocks.iter().enumerate() {
             for row in &block.wall_rows {
-                touching[self.pieces[c * CHUNK + row.row as usize] as usize] = true;
+                let i = c * CHUNK + row.row as usize;
+                let piece = &mut touching[self.pieces[i] as usize];
+                *piece = *piece || gives(i, row);
             }
         }
         touching

@@ -27,6 +27,7 @@ mod lists;
 mod lone;
 mod meeting;
 mod mirror;
+mod momentum;
 mod motion;
 mod numerics;
 mod outputs;

@@ -71,19 +71,6 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// What the viscous solve has taken from the momentum of all that touches walls [N s]. (E9) holds to its tolerance, and what touches no
-    /// wall has the rest back already ([`Solver::restore_momentum`]).
-    fn momentum_of_solve(&self, state: &State<D>) -> Vector<D> {
-        let mut sum = [0.0; D];
-        let touching = self.lists.touching();
-        let pieces = self.lists.pieces.iter().enumerate();
-        for (i, _) in pieces.filter(|(_, piece)| touching[**piece as usize]) {
-            let change = sub(&self.prediction[i].velocity, &self.viscous.velocity[i]);
-            sum = add(&sum, &scale(state.grains.mass[i], &change));
-        }
-        sum
-    }
-
     fn pushing<'a>(
         &self,
         state: &State<D>,

@@ -10,7 +10,7 @@
 
 use crate::boundary::WallPoints;
 use crate::material::Material;
-use crate::math::{Vector, dot, norm};
+use crate::math::{Vector, dot, norm, scale, sub};
 use crate::state::{Grains, RestState, State};
 
 use super::{Numerics, Scheme, Solver, StepBound, StepInputs, SubStep};
@@ -137,8 +137,11 @@ impl<const D: usize> Solver<D> {
         }
         let time = rest.quiet_time;
         let force = rest.impulse.iter().map(|sum| sum.map(|s| s / time));
-        let force: Vec<_> = force.collect();
+        let mut force: Vec<_> = force.collect();
         let asleep = is_steady(&rest.force, &force);
+        if asleep {
+            self.carry_weight(&state.grains, &mut force);
+        }
         *rest = RestState {
             asleep,
             force,
@@ -146,6 +149,26 @@ impl<const D: usize> Solver<D> {
         };
         if asleep {
             state.grains.velocity.fill([0.0; D]);
+        }
+    }
+
+    /// What stands still is carried: walls share what their forces lack of the weight, which is what momentum changed by in the window.
+    fn carry_weight(&self, grains: &Grains<D>, force: &mut [Vector<D>]) {
+        let mass: f64 = grains.mass.iter().sum();
+        let mut lacks = scale(mass, &self.gravity);
+        for f in force.iter() {
+            lacks = sub(&lacks, f);
+        }
+        if self.geometry.is_axisymmetric() {
+            // Hoop stress bears along the radius.
+            lacks[0] = 0.0;
+        }
+        let total: f64 = force.iter().map(norm).sum();
+        if total > 0.0 {
+            for f in force {
+                let share = norm(f) / total;
+                *f = std::array::from_fn(|k| f[k] + share * lacks[k]);
+            }
         }
     }
 

@@ -46,9 +46,6 @@ impl Before {
 pub(super) struct Found {
     /// By how much momentum misses the impulses, and the largest of these [kg m/s]; `None` where it cannot be told.
     pub(super) momentum: Option<(f64, f64)>,
-    /// Sum of mass times speed against the walls' fastest, with a fall over the communication step and what pressure pushes
-    /// in it [kg m/s].
-    pub(super) moving: f64,
     /// Energy over what it may be without any error, over the scale of the start; `None` where it cannot be told.
     pub(super) energy: Option<f64>,
 }
@@ -176,25 +173,6 @@ impl<'a> Balance<'a> {
         self.scene.walls.iter().map(speed).fold(0.0, f64::max)
     }
 
-    /// Sum over particles of the force of their pressure on one side: what pressure, before it is balanced, pushes with in a
-    /// step, and the solve is relative to [N].
-    fn pushes(&self, component: &Component) -> f64 {
-        let n = &self.scene.numerics;
-        let view = component.particles();
-        let push = |(p, x): (&f32, &[f32; 3])| {
-            let face = match self.scene.dimension {
-                Dimension::Two => n.spacing * self.scene.domain.width,
-                Dimension::Axisymmetric => {
-                    let ring = std::f64::consts::TAU * f64::from(x[0]);
-                    n.spacing * ring
-                }
-                Dimension::Three => n.spacing * n.spacing,
-            };
-            f64::from(*p) * face
-        };
-        view.pressure.iter().zip(&view.position).map(push).sum()
-    }
-
     /// What a fall through the domain, the start, walls, gates and inflows can give a particle by a time [m/s].
     pub(super) fn speed(&self, time: f64) -> f64 {
         let scene = self.scene;
@@ -263,9 +241,6 @@ impl<'a> Balance<'a> {
         });
         Found {
             momentum: self.momentum(before, now, impulse, largest),
-            moving: self.pushes(component) * h
-                + now.totals.momentum_scale.max(before.totals.momentum_scale)
-                + now.mass * (self.walls_speed() + length(&scene.domain.gravity, &[0.0; 3]) * h),
             energy,
         }
     }
@@ -293,8 +268,8 @@ impl<'a> Balance<'a> {
             .sum::<f64>()
             .sqrt();
         let scale = if self.has_walls() {
-            // Rounding of the sums, beside what the solve leaves.
-            largest + 1e-9 * now.totals.momentum_scale
+            // Rounding of the sums.
+            largest + 1e-4 * now.totals.momentum_scale
         } else {
             now.totals.momentum_scale.max(largest)
         };

@@ -63,8 +63,8 @@ impl Check {
             Check::Momentum,
             "momentum",
             "where nothing flows in or out, momentum changes by gravity and the forces that the gauges of walls and gates \
-             report, to 1e-4 of the largest of these impulses and 3 times the solve's tolerance of the momentum that moves, an internal \
-             step; without walls to 1e-9 of the sum of m abs(v)",
+             report, to 1e-9 of the largest of these impulses and 1e-13 of the sum of m abs(v); without walls to 1e-9 of \
+             the sum of m abs(v)",
         ),
         (
             Check::Energy,

@@ -12,15 +12,8 @@ use super::checks::{Check, Failure};
 use super::ride::{Done, Ride};
 use super::run::Figures;
 
-/// Share of a communication step's impulses by which momentum may miss them.
-const MOMENTUM: f64 = 1e-4;
-
-/// What a solve's residual, summed over all particles, may be: so many times its tolerance times the sum of mass times
-/// speed against the walls, a step's fall at least.
-const SOLVE: f64 = 3.0;
-
-/// The same without walls, over the sum of mass times speed: rounding.
-const FREE_MOMENTUM: f64 = 1e-9;
+/// Share of a communication step's impulses by which momentum may miss them, without walls of the sum of mass times speed.
+const MOMENTUM: f64 = 1e-9;
 
 /// Growth of energy without any cause, over the potential energy of the material's height: elastic energy at the Mach
 /// number of the scheme, and sampling.
@@ -191,14 +184,7 @@ impl<'a> Witness<'a> {
         if let Some((miss, scale)) = found.momentum
             && !fell_asleep
         {
-            // What the solve leaves goes to the walls (solver/reactions.rs), but for a small part in a few scenes.
-            let steps = done.report.substeps as f64;
-            let allowed = if self.balance.has_walls() {
-                MOMENTUM * scale
-                    + SOLVE * self.scene.numerics.solver_tolerance * steps * found.moving
-            } else {
-                FREE_MOMENTUM * scale
-            };
+            let allowed = MOMENTUM * scale;
             let share = miss / allowed.max(f64::MIN_POSITIVE);
             self.figures.momentum_error = self.figures.momentum_error.max(share);
             if share > 1.0 {

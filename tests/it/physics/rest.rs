@@ -86,6 +86,29 @@ fn forces_have_settled_before_sleep() {
     }
 }
 
+/// What sleeps is carried: the forces of all walls and gates are its weight.
+#[test]
+fn a_sleeping_silo_weighs_its_weight() {
+    let gauges = "[gauges.left]\nkind = \"force\"\non = \"wall.left\"\n\n\
+                  [gauges.right]\nkind = \"force\"\non = \"wall.right\"\n\n[gauges.gate_force]";
+    let edits = [
+        ("spacing = \"3.125 mm\"", "spacing = \"6.25 mm\""),
+        ("[gauges.gate_force]", gauges),
+    ];
+    let mut unit = Unit::new(&case("silo_gate", &edits));
+    unit.run_to(1.0);
+    assert!(unit.component.particles().asleep.iter().all(|a| *a == 1));
+    let sum = |axis: &str| -> f64 {
+        let forces = ["left", "right", "gate_force"];
+        let of = |name: &str| unit.get(&format!("gauge.{name}.force_{axis}"));
+        forces.into_iter().map(of).sum()
+    };
+    let weight = 9.81 * unit.component.ledger().present;
+    println!("weight {weight} N, carried {} N", sum("y"));
+    assert!((sum("y") / -weight - 1.0).abs() < 1e-12);
+    assert!(sum("x").abs() < 1e-12 * weight);
+}
+
 /// A closed silo sleeps; its gate wakes it, and it then discharges as one that was never asleep. Forces stay while it
 /// sleeps, and a saved sleeper sleeps on.
 #[test]
