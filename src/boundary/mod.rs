@@ -13,6 +13,6 @@ mod wall_points;
 pub use element::{Element, box_elements, plane_elements, polyline_elements};
 pub use ends::{End, free_ends};
 pub use mover::{Mover, RigidMotion};
-pub use plate::Plate;
+pub use plate::{Meets, Plate};
 pub use points::{ROWS, box_points, joined_points, plane_points, polyline_points};
 pub use wall_points::{GroupSpec, WallPoints};

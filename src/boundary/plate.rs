@@ -7,6 +7,28 @@ use crate::math::{Vector, add, dot, norm, scale, sub};
 /// Share of a point below which it is hidden [1].
 const HIDDEN: f64 = 1e-9;
 
+/// A point of a plate.
+#[derive(Clone, Copy, Debug)]
+struct Point<const D: usize> {
+    /// Distance along the axis from the leading edge [m].
+    along: f64,
+    /// Off the axis [m].
+    offset: Vector<D>,
+    /// Group that bears what is pushed on it.
+    group: u16,
+}
+
+/// What a shut plate meets at one of its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Meets {
+    /// Nothing, or no corner to fill.
+    Nothing,
+    /// A wall that stands across it: the corner is the plate's.
+    Corner,
+    /// A wall of this group whose face goes on from the plate's: what fills its edge bears for it.
+    Face(u16),
+}
+
 /// Geometry of a plate: face from `from` along `axis`, body behind it.
 #[derive(Clone, Debug)]
 pub struct Plate<const D: usize> {
@@ -18,8 +40,7 @@ pub struct Plate<const D: usize> {
     pub length: f64,
     /// Largest speed [m/s].
     pub max_speed: f64,
-    /// (distance along the axis from the leading edge, offset off the axis) of each point.
-    points: Vec<(f64, Vector<D>)>,
+    points: Vec<Point<D>>,
     /// Spacing of points along the axis [m].
     step: f64,
     thickness: f64,
@@ -71,7 +92,12 @@ impl<const D: usize> Plate<D> {
                     if D == 3 {
                         offset = add(&offset, &scale((m as f64 + 0.5) / wide as f64, span));
                     }
-                    points.push(((i as f64 + 0.5) * step, offset));
+                    let along = (i as f64 + 0.5) * step;
+                    points.push(Point {
+                        along,
+                        offset,
+                        group,
+                    });
                 }
             }
         }
@@ -93,20 +119,30 @@ impl<const D: usize> Plate<D> {
     /// Where a shut plate meets the end of a wall, the two bodies touch at a point, and a fluid seeps through between them: fills
     /// what lies beyond the plate's ends, as far as `is_free`. Beyond the far end it stays until the plate has left it; beyond the
     /// leading edge it comes out of the edge as that closes the last of the way, and goes as it opens.
-    pub fn fill_corners(&mut self, ends: [bool; 2], is_free: impl Fn(&Vector<D>) -> bool) {
+    pub fn fill_corners(&mut self, ends: [Meets; 2], is_free: impl Fn(&Vector<D>) -> bool) {
         if D == 3 {
             return;
         }
         let first = 0.5 * self.step;
-        let across = self.points.iter().filter(|(u, _)| *u == first);
-        let across: Vec<Vector<D>> = across.map(|(_, offset)| *offset).collect();
+        let across = self.points.iter().filter(|p| p.along == first);
+        let across: Vec<Vector<D>> = across.map(|p| p.offset).collect();
         for row in 0..ROWS {
             let beyond = (row as f64 + 0.5) * self.step;
-            for (end, u) in [-beyond, self.length + beyond].into_iter().enumerate() {
+            for (end, along) in [-beyond, self.length + beyond].into_iter().enumerate() {
+                let group = match ends[end] {
+                    Meets::Nothing => continue,
+                    Meets::Corner => self.group,
+                    Meets::Face(group) => group,
+                };
                 let place =
-                    |offset: &Vector<D>| add(&add(&self.from, &scale(u, &self.axis)), offset);
-                let fills = across.iter().filter(|o| ends[end] && is_free(&place(o)));
-                let filled: Vec<_> = fills.map(|offset| (u, *offset)).collect();
+                    |offset: &Vector<D>| add(&add(&self.from, &scale(along, &self.axis)), offset);
+                let fills = across.iter().filter(|o| is_free(&place(o)));
+                let point = |offset: &Vector<D>| Point {
+                    along,
+                    offset: *offset,
+                    group,
+                };
+                let filled: Vec<_> = fills.map(point).collect();
                 self.points.extend(filled);
             }
         }
@@ -115,8 +151,8 @@ impl<const D: usize> Plate<D> {
     /// Adds its points to the wall points, at opening 0.
     pub fn append(&mut self, walls: &mut WallPoints<D>) {
         self.first = walls.len();
-        for _ in &self.points {
-            walls.push(self.from, [0.0; D], self.normal, 0.0, self.group);
+        for point in &self.points {
+            walls.push(self.from, [0.0; D], self.normal, 0.0, point.group);
         }
         self.place(walls, 0.0, 0.0);
     }
@@ -142,18 +178,19 @@ impl<const D: usize> Plate<D> {
     /// Puts the points where an opening has them, with the velocity of a rate of opening [1/s].
     pub fn place(&self, walls: &mut WallPoints<D>, opening: f64, rate: f64) {
         let velocity = self.velocity(rate);
-        for (n, (u, offset)) in self.points.iter().enumerate() {
-            let stays = *u > self.length;
-            let s = if stays { *u } else { opening * self.length + u };
+        for (n, point) in self.points.iter().enumerate() {
+            let u = point.along;
+            let stays = u > self.length;
+            let s = if stays { u } else { opening * self.length + u };
             let i = self.first + n;
-            walls.position[i] = add(&add(&self.from, &scale(s, &self.axis)), offset);
+            walls.position[i] = add(&add(&self.from, &scale(s, &self.axis)), &point.offset);
             walls.velocity[i] = if stays { [0.0; D] } else { velocity };
             // What has slid past the end is hidden, the last point by its share; of that, rounding is nothing. So is what fills the
             // corner at the leading edge and is in the opening.
             let share = if stays {
                 (1.0 - opening) * self.length / (ROWS as f64 * self.step)
             } else {
-                let left = if *u < 0.0 { -s } else { self.length - s };
+                let left = if u < 0.0 { -s } else { self.length - s };
                 left / self.step + 0.5
             };
             let share = share.clamp(0.0, 1.0);

@@ -97,10 +97,18 @@ fn faces<const D: usize>(pushes: &[Push<D>]) -> Vec<Face<D>> {
 }
 
 /// How much of a corner each face (columns) makes with each other one (rows) [1]: all of it where it stands on it, nothing where it ends a
-/// row or more above it, as a lifted gate does.
+/// row or more above it, as a lifted gate does, and nothing where one lies behind the other, as the lip of a floor behind a gate that
+/// goes on from it.
 fn shares<const D: usize>(faces: &[Face<D>], pushes: &[Push<D>], spacing: f64) -> Vec<Vec<f64>> {
+    let is_before = |a: &Face<D>, b: &Face<D>| {
+        let mut own = pushes.iter().filter(|p| a.has(p));
+        own.any(|p| dot(&b.normal, &p.to) > b.row + 0.5 * spacing)
+    };
     let share = |own: &Face<D>, other: &Face<D>| {
         if own.group == other.group || dot(&own.normal, &other.normal).abs() > PARALLEL {
+            return 0.0;
+        }
+        if !(is_before(own, other) && is_before(other, own)) {
             return 0.0;
         }
         let points = pushes.iter().filter(|p| other.has(p));
@@ -182,6 +190,25 @@ mod tests {
             (0..6).map(move |b| (1, [1.0, 0.0], [place(a), place(b) + lift * DP]))
         });
         floor.chain(gate)
+    }
+
+    /// A gate (1) that goes on from a floor (0), whose lip goes down beside it.
+    #[test]
+    fn a_lip_behind_a_gate_is_none_of_its_corners() {
+        let place = |k: i32| (f64::from(k) + 0.5) * DP;
+        let floor = (-6..0).flat_map(|a| (-4..0).map(move |b| (a, b)));
+        let floor = floor.map(|(a, b)| {
+            // What is nearer to the lip than to the floor has its normal.
+            let normal = if a > b { [1.0, 0.0] } else { [0.0, 1.0] };
+            (0, normal, [place(a), place(b)])
+        });
+        let gate = (0..6).flat_map(|a| (-4..0).map(move |b| (1, [0.0, 1.0], [place(a), place(b)])));
+        let before = pushes([0.5 * DP, 0.5 * DP], floor.chain(gate));
+        let mut after = before.clone();
+        part_at_corners(&mut after, DP);
+        for group in 0..2 {
+            assert_eq!(sum(&after, |g| g == group), sum(&before, |g| g == group));
+        }
     }
 
     #[test]

@@ -130,3 +130,52 @@ fn a_gate_bears_the_thrust_of_the_water() {
         }
     }
 }
+
+/// A gate flush in a floor bears the water above it, whatever lips stand below its edges: they lie behind the floor, and what fills
+/// the edge under a lip bears for it. It read 6 % too much beside upright lips, 14 % beside those of 45 degrees.
+#[test]
+fn a_gate_in_a_floor_bears_what_is_above_it() {
+    let lip = |depth: f64, aside: f64| {
+        format!(
+            r#"
+name = "bin"
+[domain]
+lower = [-0.35, -0.3]
+upper = [0.35, 0.6]
+[numerics]
+spacing = "5 mm"
+[materials.water]
+law = "fluid"
+preset = "water"
+[bodies.water]
+material = "water"
+box = {{ lower = [-0.15, 0], upper = [0.15, 0.2] }}
+[walls.left]
+polyline = [[-0.15, 0.5], [-0.15, 0], [-0.03, 0], [{}, -{depth}]]
+slip = "free_slip"
+[walls.right]
+polyline = [[{}, -{depth}], [0.03, 0], [0.15, 0], [0.15, 0.5]]
+slip = "free_slip"
+[gates.main]
+from = [-0.03, 0]
+to = [0.03, 0]
+[gauges.force]
+kind = "force"
+on = "gate.main"
+[run]
+step = "50 ms"
+until = "0.5 s"
+"#,
+            -0.03 - aside,
+            0.03 + aside,
+        )
+    };
+    let weight = 1000.0 * G * 0.2 * 0.06;
+    for (depth, aside) in [(0.06, 0.0), (0.04, 0.02), (0.04, 0.04), (0.0125, 0.01)] {
+        let mut bin = Unit::new(&scene::parse("bin", &lip(depth, aside)).unwrap());
+        bin.run_to(0.5);
+        let found = -bin.get("gauge.force.force_y") / weight;
+        println!("lip {depth} m down, {aside} m aside: {found:.4} of the water's weight");
+        assert!((found - 1.0).abs() < 0.04);
+    }
+}
