@@ -33,6 +33,10 @@ pub(super) struct FrictionRow<const D: usize> {
     pub(super) penalty: f64,
     /// mu_w p [Pa].
     pub(super) bears: f64,
+    /// Speed along the faces that mu_w p would take from it alone in the step [m/s].
+    pub(super) stops: f64,
+    /// Whether it holds together with what is around it, by cohesion.
+    pub(super) holds: bool,
     /// Whether it is loose and slides, faster than friction could stop it in the step. What holds together loosens from no wall, and the
     /// stress of a plug, which its friction follows, is known after the solve alone.
     pub(super) slides: bool,
@@ -49,6 +53,8 @@ impl<const D: usize> FrictionRow<D> {
             spread: [[0.0; D]; D],
             penalty: 0.0,
             bears: 0.0,
+            stops: 0.0,
+            holds: false,
             slides: false,
         };
         let mut normal = [0.0; D];
@@ -140,11 +146,16 @@ impl<const D: usize> Solver<D> {
         row.bears = friction * pressure;
         // Friction takes some steps to come, so that what comes to rest does not turn round; but is all there in the first of
         // what slides and cannot come to rest in it.
-        let slides = slip > SURELY * stopping * row.bears * trace(&row.grip);
+        row.stops = stopping * row.bears * trace(&row.grip);
+        let slides = slip > SURELY * row.stops;
         let begins = norm(&state.grains.wall_traction[i]) < 0.5 * row.bears;
-        let holds = self.materials[state.grains.phase[i] as usize].cohesion > 0.0;
-        row.slides = slides && !holds;
-        let share = if slides && holds && begins { 1.0 } else { 0.1 };
+        row.holds = self.materials[state.grains.phase[i] as usize].cohesion > 0.0;
+        row.slides = slides && !row.holds;
+        let share = if slides && row.holds && begins {
+            1.0
+        } else {
+            0.1
+        };
         row.penalty = pressure * stick.min(share * friction / slip.max(f64::MIN_POSITIVE));
         row
     }

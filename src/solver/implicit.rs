@@ -18,6 +18,9 @@ const RESTING: f64 = 0.3;
 /// within the tolerance: what a solve leaves, the next one starts with, so that in steady flow it would add up step by step.
 const SETTLED: f64 = 1e-3;
 
+/// Iterations of the yield in a step in which friction would turn what holds together round (`friction_drives`).
+const MOST_TURNING: u32 = 10;
+
 /// Work arrays of the solve. A velocity and the stress that is linear in it, (1 - share) 2 eta e(v), stand side by side.
 #[derive(Debug, Default)]
 pub(super) struct Viscous<const D: usize> {
@@ -119,9 +122,10 @@ impl<const D: usize> Solver<D> {
                 Ok(spent)
             }
             YieldForm::Exact { iterations } => {
-                let mut spent = 0;
+                let (mut spent, mut done) = (0, 0);
                 self.cut_stress(state);
-                for done in 0..iterations {
+                while done < iterations || done < MOST_TURNING && self.friction_drives(state, work)
+                {
                     if done == 0 && self.acoustic.count() > 1 {
                         self.expect_plastic_stress(state, work);
                     } else {
@@ -134,6 +138,7 @@ impl<const D: usize> Solver<D> {
                     spent += self.conjugate_gradients(state, dt, limit, work)?;
                     self.project(state, work);
                     self.project_friction(state, work);
+                    done += 1;
                 }
                 Ok(spent)
             }

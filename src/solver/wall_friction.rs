@@ -33,6 +33,9 @@ pub(super) struct Friction<const D: usize> {
 /// mu_w p over the traction of a face along which a particle slides by so small a share of its slip [1].
 const STEEP: f64 = 10.0;
 
+/// Slip that does not count as one, at full friction, over what that takes in a step [1].
+const STILL: f64 = 1e-3;
+
 impl<const D: usize> Solver<D> {
     /// Cuts the slip s that a step starts from where r s is more than the faces bear: at most a fifth of that is usual.
     ///
@@ -147,6 +150,20 @@ impl<const D: usize> Solver<D> {
             let share = if size > most { most / size } else { 1.0 };
             grains.wall_slip[i] = scale(share / row.penalty, &cut);
         }
+    }
+
+    /// Whether friction, after a solve, drives most of what holds together along its faces instead of holding it back: it has come to rest
+    /// in this step, and the traction of its slip would turn it round.
+    pub(super) fn friction_drives(&self, state: &State<D>, work: &Viscous<D>) -> bool {
+        let (mut all, mut driven) = (0, 0);
+        for row in self.friction.rows.iter().filter(|row| row.holds) {
+            let slip = row.slip(&work.current[row.i].velocity());
+            let traction = &state.grains.wall_traction[row.i];
+            let power = dot(traction, &slip);
+            all += 1;
+            driven += usize::from(power < -STILL * row.stops * row.bears);
+        }
+        2 * driven > all
     }
 
     /// Makes the friction of a step of what slides that of the pressure and stress it ended with, by what the last solve took too much or
