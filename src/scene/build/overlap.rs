@@ -1,9 +1,9 @@
 //! Whether a scene can start: no particle inside a wall or gate.
 
 use super::plates::with_plates;
-use crate::math::{Vector, dot};
+use crate::math::{Vector, dot, sub};
 use crate::scene::Scene;
-use crate::solver::Plan;
+use crate::solver::{Plan, Scheme};
 use crate::state::{CellGrid, State};
 
 /// No particle may start inside a wall or gate.
@@ -26,9 +26,18 @@ pub(super) fn check_overlap<const D: usize>(
         .collect();
     let visible: Vec<Vector<D>> = shown.iter().map(|&w| walls.position[w]).collect();
     let cells = CellGrid::build(&visible, plan.numerics.spacing, &sides);
+    // Elements of scheme paper_b lie in the surface itself: what is in front of the nearest one is clear, however near.
+    let in_surface = matches!(plan.numerics.scheme, Scheme::PaperB(_));
     for x in &state.grains.position {
         let mut hit = None;
-        cells.for_each_within(x, near, |w, _, _| hit = Some(w));
+        let mut nearest = f64::INFINITY;
+        cells.for_each_within(x, near, |w, y, r| {
+            if r < nearest {
+                nearest = r;
+                let behind = dot(&walls.normal[shown[w]], &sub(x, &y)) < 0.0;
+                hit = Some(w).filter(|_| behind || !in_surface);
+            }
+        });
         if let Some(w) = hit {
             return Err(format!(
                 "a particle starts at {:?} m, inside {}: move the body or the wall apart",

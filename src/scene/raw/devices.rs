@@ -9,7 +9,7 @@ choice! {
         "no_slip" => NoSlip,
         /// no shear stress at the wall
         "free_slip" => FreeSlip,
-        /// Coulomb friction: material sticks until the shear stress is wall_friction times the normal one, then slides
+        /// Coulomb friction: grains stick until the shear stress is wall_friction times the normal one, then slide; fluids, clay too, slide freely
         "friction" => Friction,
     }
 }
