@@ -79,6 +79,7 @@ impl<const D: usize> Solver<D> {
         self.kinematics = kinematics;
         self.note_lean(state);
         self.note_textures(state);
+        self.note_turning(state);
     }
 
     #[inline(always)]
@@ -111,6 +112,7 @@ impl<const D: usize> Solver<D> {
                 block,
                 (&near[..count], kinds),
             );
+            let mut alone = kinds[0] == count / LANES;
             if !block.wall_row(row).is_empty()
                 && let Some(mut w) = self.wall_row(
                     state,
@@ -128,8 +130,12 @@ impl<const D: usize> Solver<D> {
                     add_image_gradient(block.images_of(&w), i, v, &mut sums.images);
                 }
                 block.wall_rows.push(w);
+                alone = false;
             }
             let phase = state.grains.phase[i];
+            if !self.turns.is_empty() {
+                block.turning.push(self.turn(&mut sums, phase, alone));
+            }
             *o = self.finish(&sums, phase, i, v);
             if FLUIDS && !self.slides.is_empty() {
                 block.textures.push(self.texture(&sums, o, phase));

@@ -60,6 +60,7 @@ mod step;
 mod sweep_tests;
 mod texture;
 mod timestep;
+mod turning;
 mod validity;
 mod viscous;
 mod wall_contact;
@@ -71,7 +72,7 @@ mod wall_yield;
 pub use devices::{Sink, Source};
 pub use error::SolverError;
 pub use grid::Periodic;
-pub use numerics::{Numerics, Scheme, YieldForm};
+pub use numerics::{Numerics, Rotation, Scheme, YieldForm};
 pub use outputs::three;
 pub use paper_a::{PaperA, Sweeps};
 pub use paper_b::PaperB;
@@ -81,9 +82,10 @@ pub use plan::{OnMove, Plan, StepBound, StepInputs, SubStep};
 pub use rest::StaysAwake;
 pub use validity::Validity;
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use crate::boundary::{Mover, Plate, WallPoints};
+use crate::boundary::{Mover, Plate, RigidMotion, WallPoints};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
 use crate::math::{Arch, Geometry, Quad, Tensor, Vector, Workers};
@@ -121,6 +123,7 @@ pub struct Solver<const D: usize> {
     fixed_groups: usize,
     movers: Vec<Mover<D>>,
     plates: Vec<Plate<D>>,
+    spins: Vec<(Range<u64>, RigidMotion<D>)>,
     sources: Vec<Source<D>>,
     sinks: Vec<Sink<D>>,
     workers: Arc<Workers>,
@@ -165,6 +168,10 @@ pub struct Solver<const D: usize> {
     texture: Vec<Tensor<D>>,
     /// p T of each particle [Pa].
     uneven_pressure: Vec<Tensor<D>>,
+    /// For each material whether (T1) is for it; where it is for none, this and what follows stay empty.
+    turns: Vec<bool>,
+    /// M of each particle that it is for, 0 of others [1].
+    turning: Vec<Tensor<D>>,
     /// Stress that each particle's strain against walls without slip lacks (W8) [Pa]; empty in scenes without fluids that yield.
     wall_share: Vec<f64>,
     /// Id and div v [1/s] at the start of the step of fluid particles without neighbours, by id; else empty.

@@ -28,6 +28,17 @@ pub enum YieldForm {
     Capped,
 }
 
+/// Whose rigid rotation makes no stress (docs/theory.md, T1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rotation {
+    /// That of grains with cohesion and of fluids with a yield stress. The default.
+    Cohesive,
+    /// That of all materials: friction of sand's surface that flows is up to a fifth too large.
+    All,
+    /// Nobody's: the plain form, which resists rotation near surfaces.
+    Off,
+}
+
 /// Numerical choices. All resolved: the scene reader fills in what a file leaves out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numerics {
@@ -60,6 +71,8 @@ pub struct Numerics {
     pub strain_relaxation_time: f64,
     /// Share of the viscous stress carried by the pair operator against zero-energy modes [1]; default 0.05, 0.5 where all materials are Newtonian fluids.
     pub pair_viscosity_share: f64,
+    /// Whose rigid rotation makes no stress.
+    pub rotation: Rotation,
     /// Artificial viscosity alpha of [A] eq. 38 [1]; default 0.
     pub artificial_viscosity: f64,
     /// Factor on the shifting of fluid particles towards even spacing [1]; 0 switches it off.

@@ -94,6 +94,11 @@ impl<const D: usize> Solver<D> {
         (0..n).map(size).collect()
     }
 
+    /// gamma of each particle [1/s], of the plain velocity gradient.
+    pub fn shear_rates(&self) -> impl Iterator<Item = f64> + '_ {
+        self.kinematics.iter().map(|k| k.shear)
+    }
+
     /// Inertial number of each particle [1].
     #[must_use]
     pub fn inertial_number(&self) -> &[f64] {

@@ -83,6 +83,8 @@ pub(super) struct Block<const D: usize> {
     pub(super) images: Vec<Image<D>>,
     /// T of (F3) of each row; empty in scenes without.
     pub(super) textures: Vec<Tensor<D>>,
+    /// M of each row that (T1) is for, 0 of others; empty in scenes without.
+    pub(super) turning: Vec<Tensor<D>>,
     /// Faces with friction that rows see, row after row; empty in scenes without.
     pub(super) contacts: Vec<Contact<D>>,
 }
@@ -168,6 +170,7 @@ impl<const D: usize> Block<D> {
         self.wall_rows.clear();
         self.images.clear();
         self.textures.clear();
+        self.turning.clear();
         self.contacts.clear();
     }
 

@@ -1,6 +1,8 @@
 //! What a solver is made for, what goes into an internal step, and what it says of it.
 
-use crate::boundary::{Mover, Plate, WallPoints};
+use std::ops::Range;
+
+use crate::boundary::{Mover, Plate, RigidMotion, WallPoints};
 use crate::material::Material;
 use crate::math::{Geometry, Vector};
 use crate::state::Grains;
@@ -33,6 +35,8 @@ pub struct Plan<const D: usize> {
     pub movers: Vec<Mover<D>>,
     /// Gates.
     pub plates: Vec<Plate<D>>,
+    /// How bodies that turn move at the start, by the numbers of their particles.
+    pub spins: Vec<(Range<u64>, RigidMotion<D>)>,
     /// Inflows.
     pub sources: Vec<Source<D>>,
     /// Outflows.

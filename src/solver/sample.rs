@@ -5,7 +5,7 @@ use crate::material::Material;
 use crate::math::{Geometry, Vector};
 use crate::state::{Grains, PoseTimes, Random, RestState, State};
 
-use super::{Numerics, Periodic, Plan, Scheme, YieldForm};
+use super::{Numerics, Periodic, Plan, Rotation, Scheme, YieldForm};
 
 /// Spacing dp of samples [m].
 pub(super) const SPACING: f64 = 0.01;
@@ -25,6 +25,7 @@ pub(super) fn numerics() -> Numerics {
         diffusion_gate_time: 1.0,
         strain_relaxation_time: 0.05,
         pair_viscosity_share: 0.05,
+        rotation: Rotation::Cohesive,
         artificial_viscosity: 0.0,
         shifting: 0.0,
         solver_tolerance: 3e-4,
@@ -57,6 +58,7 @@ pub(super) fn plan<const D: usize>(
         ghost_depth: Vec::new(),
         movers: Vec::new(),
         plates: Vec::new(),
+        spins: Vec::new(),
         sources: Vec::new(),
         sinks: Vec::new(),
     }

@@ -13,7 +13,7 @@ use super::implicit::Viscous;
 use super::lists::Lists;
 use super::packing::Packing;
 use super::wall_friction::Friction;
-use super::{Plan, Scheme, Solver, explicit, paper_a, paper_b, pore, rest, texture};
+use super::{Plan, Scheme, Solver, explicit, paper_a, paper_b, pore, rest, texture, turning};
 
 /// Skin of the neighbour lists over h [1].
 const SKIN: f64 = 0.3;
@@ -34,6 +34,7 @@ impl<const D: usize> Solver<D> {
             ghost_depth,
             movers,
             mut plates,
+            spins,
             sources,
             sinks,
         } = plan;
@@ -58,6 +59,7 @@ impl<const D: usize> Solver<D> {
         };
         let rate = explicit::rate::<D>(lattice_sum);
         let slides = texture::who_slides(&numerics, geometry, &materials, rate);
+        let turns = turning::who_turns(&numerics, geometry, &materials);
         let stays_awake = rest::stays_awake(&numerics, &gravity, &walls, &materials);
         for plate in &mut plates {
             plate.append(&mut walls);
@@ -80,6 +82,7 @@ impl<const D: usize> Solver<D> {
             fixed_groups,
             movers,
             plates,
+            spins,
             sources,
             sinks,
             workers: Arc::new(Workers::new(threads)),
@@ -109,6 +112,8 @@ impl<const D: usize> Solver<D> {
             slides,
             texture: Vec::new(),
             uneven_pressure: Vec::new(),
+            turns,
+            turning: Vec::new(),
             mirrors: Vec::new(),
             openness: Vec::new(),
             shift: Vec::new(),
@@ -135,11 +140,22 @@ impl<const D: usize> Solver<D> {
     pub fn start(&mut self, state: &mut State<D>) {
         self.renew_lists(state);
         self.pack(state);
+        self.set_turning(state);
         if self.has_pores && self.numerics.scheme == Scheme::Implicit {
             self.sweep_kinematics(state);
             self.seep(state);
         }
         self.derive(state);
+    }
+
+    /// Bodies that turn at the start do so about where their particles were packed to.
+    fn set_turning(&self, state: &mut State<D>) {
+        let grains = &mut state.grains;
+        for (ids, motion) in &self.spins {
+            for i in (0..grains.len()).filter(|i| ids.contains(&grains.id[*i])) {
+                grains.velocity[i] = motion.velocity_at(&grains.position[i], 0.0);
+            }
+        }
     }
 
     /// Derives lists, walls, pressures and viscosities of a restored state, with the bits they had.

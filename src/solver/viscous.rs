@@ -15,6 +15,7 @@ use super::meeting::{HARDER, LIKE, OTHER, SOFTER, add_differences, share};
 use super::mirror::{add_image_gradient, image_drag, image_force};
 use super::pair::Block;
 use super::record::{Record, Stresses, stresses};
+use super::turning::add_turned_force;
 
 impl<const D: usize> Solver<D> {
     /// Records of v_i and tau_i = 2 (1 - share) eta_i e_i(v); tau_i = 0 for the rows that `skipped` names, if it is not empty.
@@ -40,6 +41,7 @@ impl<const D: usize> Solver<D> {
                             if let Some(w) = wall {
                                 add_image_gradient(block.images_of(w), i, v, &mut gradient);
                             }
+                            self.unturned(i, &mut gradient);
                             *o = Record::of_stress(&self.row_stress(i, &v[i], &gradient), &v[i]);
                         } else {
                             *o = Record::of_stress(&[[0.0; D]; D], &v[i]);
@@ -104,6 +106,7 @@ impl<const D: usize> Solver<D> {
         finish: impl Fn(usize, &Vector<D>) -> (Vector<D>, f64) + Sync,
     ) -> f64 {
         let share = self.numerics.pair_viscosity_share;
+        let turned = self.turned_stress(records);
         self.workers
             .blocks_sum(&self.lists.blocks, out, |block, first, out| {
                 let mut walls = block.wall_rows.iter().peekable();
@@ -122,6 +125,9 @@ impl<const D: usize> Solver<D> {
                         } else {
                             self.row_force::<_, false>(lanes, block, row, i, records)
                         };
+                        if !turned.is_empty() {
+                            add_turned_force(lanes, block, (row, i), &turned, &mut f);
+                        }
                         let own = &records[i];
                         if self.geometry.is_axisymmetric() {
                             f[0] -= self.ring_drag(i, &own.velocity(), &own.stress(), share);

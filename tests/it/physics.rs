@@ -24,6 +24,7 @@ mod rheology;
 mod roofs;
 mod silo;
 mod tension;
+mod turning;
 mod validity;
 mod walls;
 

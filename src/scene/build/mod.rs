@@ -16,7 +16,7 @@ use super::ghosts::ghost_depth;
 use super::{Dimension, Point, Scene};
 use inflows::source;
 use overlap::check_overlap;
-use particles::state;
+use particles::{spins, state};
 use plates::{plates, with_plates};
 use walls::{movers, walls};
 
@@ -53,6 +53,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         Scheme::Implicit | Scheme::PaperB(_) => Vec::new(),
     };
     let state = state(scene, &roofs(scene, &walls))?;
+    let spins = spins(scene);
     let plates = plates(scene, &walls, &state.grains.position);
     let plan = Plan {
         numerics: scene.numerics.clone(),
@@ -66,6 +67,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         ghost_depth,
         movers,
         plates,
+        spins,
         sources,
         sinks,
     };

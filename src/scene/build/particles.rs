@@ -1,10 +1,14 @@
 //! The start state: particles of the bodies, on their lattices, with the masses, densities and speeds they start with.
 
+use std::ops::Range;
+
+use crate::boundary::RigidMotion;
 use crate::math::{Vector, add};
 use crate::shape::{Lattice, lattice};
 use crate::solver::{Scheme, three};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
+use super::walls::rigid_motion;
 use super::{geometry, narrow};
 use crate::scene::load::Loads;
 use crate::scene::steady_flow::steady_flow;
@@ -142,6 +146,23 @@ fn grains<const D: usize>(
         }
     }
     grains
+}
+
+/// How bodies that turn do so at the start, by the numbers of their particles.
+pub(super) fn spins<const D: usize>(scene: &Scene) -> Vec<(Range<u64>, RigidMotion<D>)> {
+    let mut first = 0;
+    let mut spins = Vec::new();
+    if scene.bodies.iter().all(|b| b.rotation.is_none()) {
+        return spins;
+    }
+    for (body, lattice) in scene.bodies.iter().zip(lattices::<D>(scene)) {
+        let ids = first..first + lattice.points.len() as u64;
+        first = ids.end;
+        if let Some(rotation) = &body.rotation {
+            spins.push((ids, rigid_motion(&body.velocity, Some(rotation))));
+        }
+    }
+    spins
 }
 
 /// What the bodies are filled on.

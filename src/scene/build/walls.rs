@@ -8,7 +8,9 @@ use crate::math::{norm, scale};
 use crate::solver::Periodic;
 
 use super::narrow;
-use crate::scene::{Dimension, ForceTarget, GaugeKind, Point, Scene, Slip, Wall, WallGeometry};
+use crate::scene::{
+    Dimension, ForceTarget, GaugeKind, Point, Rotation, Scene, Slip, Wall, WallGeometry,
+};
 
 /// Points of all walls, and groups of walls and gates in this order.
 pub(super) fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> WallPoints<D> {
@@ -92,7 +94,10 @@ fn add_plane<const D: usize>(
     let normal = narrow(normal);
     let sides = std::array::from_fn(|k| periodic.length[k] > 0.0);
     let (lower, upper) = (narrow(&scene.domain.lower), narrow(&scene.domain.upper));
-    let motion = rigid_motion::<D>(&scene.walls[wall]);
+    let motion = rigid_motion::<D>(
+        &scene.walls[wall].velocity,
+        scene.walls[wall].rotation.as_ref(),
+    );
     let dp = scene.numerics.spacing;
     for x in plane_points::<D>(&narrow(point), &normal, &lower, &upper, &sides, dp) {
         let velocity = motion.velocity_at(&x, 0.0);
@@ -157,18 +162,24 @@ fn joints(scene: &Scene, wall: usize) -> [Option<[f64; 2]>; 2] {
 pub(super) fn movers<const D: usize>(scene: &Scene, points: &WallPoints<D>) -> Vec<Mover<D>> {
     let rigid = scene.walls.iter().enumerate().filter(|(_, w)| w.rigid);
     rigid
-        .map(|(n, wall)| Mover::new(points, n as u16, rigid_motion(wall)))
+        .map(|(n, wall)| {
+            let motion = rigid_motion(&wall.velocity, wall.rotation.as_ref());
+            Mover::new(points, n as u16, motion)
+        })
         .collect()
 }
 
-/// How a wall's material moves.
-fn rigid_motion<const D: usize>(wall: &Wall) -> RigidMotion<D> {
-    let (centre, rate, axis) = match wall.rotation {
+/// How a wall's material moves, or a body's at the start.
+pub(super) fn rigid_motion<const D: usize>(
+    velocity: &Point,
+    rotation: Option<&Rotation>,
+) -> RigidMotion<D> {
+    let (centre, rate, axis) = match rotation {
         Some(r) => (r.centre, r.rate, r.axis),
         None => ([0.0; 3], 0.0, [0.0, 0.0, 1.0]),
     };
     RigidMotion {
-        velocity: narrow(&wall.velocity),
+        velocity: narrow(velocity),
         centre: narrow(&centre),
         rate,
         axis,

@@ -2,6 +2,7 @@
 
 use super::Lift;
 use super::geometry::{Region, crossing_edges, cut_below, signed_area};
+use super::motion::Turning;
 use crate::math::dot;
 use crate::scene::raw::{At, Coordinates, Entry, Length, List, Place, RawBody, RawBox, RawColumn};
 use crate::scene::types::{Body, Dimension, VelocityProfile};
@@ -30,6 +31,13 @@ impl Lift<'_> {
             Some(velocity) => self.vector(velocity),
             None => Some([0.0; 3]),
         };
+        let rotation = self.rotation(&Turning {
+            what: "a body",
+            given: &raw.given,
+            rate: raw.angular_velocity.as_ref(),
+            centre: raw.centre.as_ref(),
+            axis: raw.axis.as_ref(),
+        });
         let shape = self.shape(entry, raw)?;
         let region = self.region(&shape);
         let region = self.fill_to_level(raw, region)?;
@@ -45,6 +53,7 @@ impl Lift<'_> {
             shape,
             level: raw.level.as_ref().map(|l| l.value.0),
             velocity: velocity?,
+            rotation: rotation?,
             profile: match raw.velocity_profile {
                 Some(_) => VelocityProfile::Bagnold,
                 None => VelocityProfile::Uniform,

@@ -2,8 +2,21 @@
 
 use super::Lift;
 use crate::math::{dot, length, normalized};
-use crate::scene::raw::{Entry, MotionWord, Place, RawWall};
+use crate::scene::raw::{
+    AngularSpeed, At, Coordinates, Entry, Length, MotionWord, Place, Ratio, RawWall,
+};
 use crate::scene::types::{Point, Rotation, WallGeometry};
+
+/// What a table says of rotation.
+pub(super) struct Turning<'a> {
+    /// What turns, with its article.
+    pub(super) what: &'a str,
+    /// Keys of the table.
+    pub(super) given: &'a [&'static str],
+    pub(super) rate: Option<&'a At<AngularSpeed>>,
+    pub(super) centre: Option<&'a At<Coordinates<Length>>>,
+    pub(super) axis: Option<&'a At<Coordinates<Ratio>>>,
+}
 
 /// Motion of a wall.
 pub(super) struct Motion {
@@ -25,7 +38,13 @@ impl Lift<'_> {
             Some(at) => self.vector(at)?,
             None => [0.0; 3],
         };
-        let rotation = self.rotation(raw)?;
+        let rotation = self.rotation(&Turning {
+            what: "a wall",
+            given: &raw.given,
+            rate: raw.angular_velocity.as_ref(),
+            centre: raw.centre.as_ref(),
+            axis: raw.axis.as_ref(),
+        })?;
         if let Some(at) = &raw.velocity {
             if rigid {
                 self.check_rigid(&at.place, geometry, velocity);
@@ -56,17 +75,15 @@ impl Lift<'_> {
         })
     }
 
-    /// angular_velocity with its centre, and in space its axis; `Some(None)` if the wall does not turn.
-    fn rotation(&mut self, raw: &RawWall) -> Option<Option<Rotation>> {
-        let Some(rate) = &raw.angular_velocity else {
-            for place in [
-                raw.centre.as_ref().map(|c| &c.place),
-                raw.axis.as_ref().map(|a| &a.place),
-            ] {
+    /// angular_velocity with its centre, and in space its axis; `Some(None)` if nothing turns.
+    pub(super) fn rotation(&mut self, raw: &Turning) -> Option<Option<Rotation>> {
+        let what = raw.what;
+        let Some(rate) = raw.rate else {
+            for place in [raw.centre.map(|c| &c.place), raw.axis.map(|a| &a.place)] {
                 if let Some(place) = place.filter(|_| !raw.given.contains(&"angular_velocity")) {
                     self.problems.report(
                         place,
-                        "a wall that does not turn",
+                        format!("{what} that does not turn"),
                         "centre and axis only beside angular_velocity",
                         "add for example angular_velocity = \"5 rpm\", or delete it",
                     );
@@ -77,13 +94,13 @@ impl Lift<'_> {
         if self.axisymmetric() {
             self.problems.report(
                 &rate.place,
-                "a wall that turns in an axisymmetric scene",
-                "walls without rotation: nothing swirls about the axis there",
+                format!("{what} that turns in an axisymmetric scene"),
+                "no rotation: nothing swirls about the axis there",
                 "delete it, or set dimension = 3",
             );
             return None;
         }
-        let Some(centre) = &raw.centre else {
+        let Some(centre) = raw.centre else {
             if !raw.given.contains(&"centre") {
                 self.problems.report(
                     &rate.place,
@@ -98,14 +115,14 @@ impl Lift<'_> {
             }
             return None;
         };
-        let axis = match (&raw.axis, self.planar()) {
+        let axis = match (raw.axis, self.planar()) {
             (None, true) => Some([0.0, 0.0, 1.0]),
             (Some(axis), false) => self.direction(axis),
             (Some(axis), true) => {
                 self.problems.report(
                     &axis.place,
                     "an axis in a planar scene",
-                    "axis only where dimension = 3; in the plane walls turn about z",
+                    "axis only where dimension = 3; in the plane all turns about z",
                     "delete it, or set dimension = 3",
                 );
                 None

@@ -1,9 +1,9 @@
 //! Numerical choices: resolution against the bodies, and the sound speed if the file does not give it.
 
 use super::Lift;
-use crate::scene::raw::{Place, RawMaterial, RawNumerics, YieldWord};
+use crate::scene::raw::{Place, RawMaterial, RawNumerics, RotationWord, YieldWord};
 use crate::scene::types::NamedMaterial;
-use crate::solver::{Numerics, Scheme, YieldForm};
+use crate::solver::{Numerics, Rotation, Scheme, YieldForm};
 
 /// Most particles of a scene: memory of a large machine.
 pub(crate) const MOST_PARTICLES: f64 = 50e6;
@@ -48,6 +48,11 @@ impl Lift<'_> {
                     0.5
                 }
                 None => 0.05,
+            },
+            rotation: match raw.rotation.as_ref()?.value {
+                RotationWord::Cohesive => Rotation::Cohesive,
+                RotationWord::All => Rotation::All,
+                RotationWord::Off => Rotation::Off,
             },
             artificial_viscosity: raw.artificial_viscosity.as_ref()?.value.0,
             shifting: match &raw.shifting {

@@ -29,6 +29,15 @@ impl Lift<'_> {
                 );
                 continue;
             }
+            if body.rotation.is_some() {
+                self.problems.report(
+                    &at.place,
+                    "a profile of a body that turns",
+                    "velocity_profile or angular_velocity",
+                    "delete one of them",
+                );
+                continue;
+            }
             let Some(Some(named)) = materials.get(body.material) else {
                 continue;
             };

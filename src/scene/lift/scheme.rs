@@ -44,6 +44,7 @@ fn keys(raw: &RawNumerics) -> Vec<Key<'_>> {
             IMPLICIT,
             place(&raw.pair_viscosity_share),
         ),
+        ("rotation", IMPLICIT, place(&raw.rotation)),
         ("solver_tolerance", IMPLICIT, place(&raw.solver_tolerance)),
         (
             "solver_max_iterations",

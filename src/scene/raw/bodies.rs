@@ -19,6 +19,12 @@ table! {
         optional level: Length;
         /// Velocity at the start.
         optional velocity: Coordinates<Speed>;
+        /// Rate of turning about `centre` at the start, added to velocity: anticlockwise in the plane, in space right-handed about `axis`; not in axisymmetric scenes.
+        optional angular_velocity: AngularSpeed;
+        /// Centre of that rotation.
+        optional centre: Coordinates<Length>;
+        /// In space: axis of that rotation, of any length.
+        optional axis: Coordinates<Ratio>;
         /// A layer on a slope that starts in steady flow; only for a box whose lower side lies on the bed.
         optional velocity_profile: ProfileWord;
     }

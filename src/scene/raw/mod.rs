@@ -34,11 +34,13 @@ pub(super) use run::*;
 pub(super) use sections::*;
 pub(super) use shapes::*;
 pub(super) use unknown::nearest;
-pub(super) use values::{Angle, Density, Length, Pressure, Ratio, Speed, Text, Viscosity};
+pub(super) use values::{
+    Angle, AngularSpeed, Density, Length, Pressure, Ratio, Speed, Text, Viscosity,
+};
 
 use declare::{choice, table, tagged};
 use key::{KeySpec, Need};
 use range::Range;
 use read::{Field, Node};
 use unknown::refuse_unknown;
-use values::{AngularSpeed, Compressibility, Flag, MassRate, Name, Time, Whole, choose, read_word};
+use values::{Compressibility, Flag, MassRate, Name, Time, Whole, choose, read_word};

@@ -49,6 +49,8 @@ table! {
         optional strain_relaxation_time: Time, in Range::above(0.0), default "50 ms";
         /// Share of viscous stress carried pair by pair, against zero-energy modes; left out: 0.05, or 0.5 in scenes of Newtonian fluids alone.
         optional pair_viscosity_share: Ratio, in Range::within(0.0, 0.95);
+        /// Whose rigid rotation makes no stress at free surfaces.
+        optional rotation: RotationWord, default "cohesive";
         /// Artificial viscosity alpha.
         optional artificial_viscosity: Ratio, in Range::within(0.0, 10.0), default 0;
         /// Factor on the shifting of particles towards even spacing; 0 switches it off, 1 is the published strength. Left out: 0, with scheme paper_b 1. With scheme implicit particles of materials with friction are never shifted.
@@ -99,6 +101,18 @@ choice! {
         "lanes" => Lanes,
         /// one pair after the other, the plain form that the other is tested and timed against
         "plain" => Plain,
+    }
+}
+
+choice! {
+    /// Whose rigid rotation makes no stress at free surfaces; else these resist it, and a block that flies or lies on a turntable loses its spin.
+    RotationWord {
+        /// that of grains with cohesion and of fluids with a yield stress
+        "cohesive" => Cohesive,
+        /// that of all materials: where sand's surface flows its friction is then too large
+        "all" => All,
+        /// nobody's
+        "off" => Off,
     }
 }
 

@@ -53,12 +53,12 @@ impl Wall {
     }
 }
 
-/// How a wall turns.
+/// How a wall turns, or a body at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotation {
     /// Angular velocity [rad/s], anticlockwise in the plane, right-handed about `axis` in space.
     pub rate: f64,
-    /// Centre of rotation at the start; it moves with the wall's velocity [m].
+    /// Centre of rotation at the start; it moves with a wall's velocity [m].
     pub centre: Point,
     /// Unit axis of rotation; z in the plane.
     pub axis: Point,

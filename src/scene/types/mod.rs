@@ -120,6 +120,8 @@ pub struct Body {
     pub level: Option<f64>,
     /// Initial velocity [m/s].
     pub velocity: Point,
+    /// How it turns at the start; its own velocity comes on top.
+    pub rotation: Option<Rotation>,
     /// What is added to it, over the body's height.
     pub profile: VelocityProfile,
 }

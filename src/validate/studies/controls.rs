@@ -1,16 +1,21 @@
 //! `negative_controls`: runs that a wrong solver would pass, and what must hold whatever the material.
 
-use super::columns::{SERIES, scene};
+use super::columns::{SERIES, scene as column_scene};
+use crate::scene;
+use crate::solver::Solver;
 use crate::validate::template::{Template, point};
-use crate::validate::{Effort, Member, Metric, Recording, Report, Results, Rule, Study};
+use crate::validate::{Effort, Member, Metric, Recording, Report, Results, Rule, Snapshot, Study};
 
 /// The study.
 pub(super) const STUDY: Study = Study {
     name: "negative_controls",
-    title: "Negative controls: too rough, too smooth, free fall, a moving frame",
+    title: "Negative controls: too rough, too smooth, free fall, a moving frame, a turning block",
     about: "What shows that the other studies can fail: the column a = 0.90 with far too much and far too little friction, at \
 six and four sqrt(H0/g); a block without a floor, which must fall at g; and the same column seen from a frame that moves at \
-100 m/s (the floor and the sand move together), whose front after 0.2 s must be where it was.",
+100 m/s (the floor and the sand move together), whose front after 0.2 s must be where it was; and a block of sand with a \
+cohesion of 3 kPa that flies and turns at 5 rad/s, by one radian: rigid rotation makes no stress and does not slow down \
+(docs/theory.md, T1). What (T1) would cost sand without cohesion in Bagnold's flow, \
+[inclined_plane](inclined_plane.md) says.",
     members,
     analyse,
 };
@@ -22,6 +27,12 @@ const H0: f64 = 0.0875;
 const BOOST: f64 = 100.0;
 /// Time of the comparison between frames [s].
 const SEEN_AT: f64 = 0.2;
+/// Spacing of the turning block, 8 and 20 rows [m], and its angular velocity [rad/s].
+const TURNING: [(&str, f64); 2] = [("turning", 5e-3), ("turning_fine", 2e-3)];
+/// The same block in the plain form.
+const PLAIN: &str = "turning_plain";
+const SPIN: f64 = 5.0;
+const TURNING_BLOCK: &str = include_str!("../../../cases/validation/spin.toml");
 const BLOCK: &str = include_str!("../../../cases/validation/free_fall.toml");
 
 fn fall() -> f64 {
@@ -39,7 +50,7 @@ fn column(
     until: f64,
     friction: Option<[f64; 2]>,
 ) -> Result<Member, String> {
-    let mut template = scene([R0, H0], spacing(effort), reach)?
+    let mut template = column_scene([R0, H0], spacing(effort), reach)?
         .with("run.step", fall() / 10.0)
         .with("run.until", until);
     if let Some([mu_s, mu_2]) = friction {
@@ -59,7 +70,7 @@ fn column(
 /// the sand goes.
 fn frame(name: &str, effort: Effort, speed: f64) -> Result<Member, String> {
     let reach = 5.0 * R0;
-    let mut template = scene([R0, H0], spacing(effort), reach)?
+    let mut template = column_scene([R0, H0], spacing(effort), reach)?
         .with("domain.upper", point(reach + speed * SEEN_AT, 1.5 * H0))
         // The same in both frames; left out, it would follow the speed of the body.
         .with("numerics.sound_speed", 10.0 * (GRAVITY * H0).sqrt())
@@ -80,9 +91,29 @@ fn frame(name: &str, effort: Effort, speed: f64) -> Result<Member, String> {
     ))
 }
 
+fn turning_block(spacing: f64, rotation: &str) -> Result<String, String> {
+    Template::new(TURNING_BLOCK)?
+        .with("numerics.spacing", spacing)
+        .with("numerics.rotation", rotation)
+        .text()
+}
+
+fn turning(name: &str, spacing: f64, rotation: &str) -> Result<Member, String> {
+    Ok(Member::new(
+        name.to_owned(),
+        turning_block(spacing, rotation)?,
+        &["energy.kinetic"],
+        vec![0.0, 0.2],
+    ))
+}
+
 fn members(effort: Effort) -> Result<Vec<Member>, String> {
     let block = Template::new(BLOCK)?.with("run.until", 0.5).text()?;
+    let [(coarse, at), (fine, at_fine)] = TURNING;
     Ok(vec![
+        turning(coarse, at, "cohesive")?,
+        turning(fine, at_fine, "cohesive")?,
+        turning(PLAIN, at, "off")?,
         column("rough", effort, 4.0 * R0, 6.0 * fall(), Some([2.0, 2.5]))?,
         column(
             "smooth",
@@ -123,6 +154,75 @@ fn acceleration(recording: &Recording) -> Option<(f64, f64)> {
     ))
 }
 
+/// Largest gamma over omega of any particle of the turning block as it starts.
+fn strain_of_rotation(spacing: f64, rotation: &str) -> Option<f64> {
+    let text = turning_block(spacing, rotation).ok()?;
+    let scene = scene::parse("spin.toml", &text).ok()?;
+    let (plan, mut state) = scene::build::<2>(&scene).ok()?;
+    let mut solver = Solver::new(plan, 1);
+    solver.start(&mut state);
+    Some(solver.shear_rates().fold(0.0, f64::max) / SPIN)
+}
+
+/// Angular momentum and angular velocity of the end over those of the start.
+fn turned(recording: &Recording) -> Option<[f64; 2]> {
+    let spin = |shot: &Snapshot| {
+        let (mut spin, mut second) = (0.0, 0.0);
+        for (x, v) in shot.position.iter().zip(&shot.velocity) {
+            let [x, y] = [f64::from(x[0]), f64::from(x[1])];
+            spin += x * f64::from(v[1]) - y * f64::from(v[0]);
+            second += x * x + y * y;
+        }
+        (spin, second)
+    };
+    let (first, last) = (
+        recording.snapshots.first().map(spin)?,
+        recording.snapshots.last().map(spin)?,
+    );
+    let rate = |(spin, second): (f64, f64)| spin / second;
+    Some([last.0 / first.0, rate(last) / rate(first)])
+}
+
+fn turning_metrics(results: &Results) -> Vec<Metric> {
+    let found = |name: &str| results.finished(name).and_then(turned);
+    let mut metrics = Vec::new();
+    for ((name, spacing), rows) in TURNING.iter().zip([8, 20]) {
+        let block = format!("turning block of {rows} rows of {} mm", 1e3 * spacing);
+        metrics.push(Metric::new(
+            format!("{block}: gamma over omega"),
+            found(name).and_then(|_| strain_of_rotation(*spacing, "cohesive")),
+            Rule::AtMost(1e-10),
+            "rigid rotation makes no strain and so no stress; the largest of all particles at the start, before it spreads",
+        ));
+        metrics.push(Metric::new(
+            format!("{block}: angular momentum after 1 rad"),
+            found(name).map(|f| f[0]),
+            Rule::Near(1.0, 2e-3),
+            "kept; the first of two acoustic steps moves particles at speeds that the solve has not seen",
+        ));
+        metrics.push(Metric::new(
+            format!("{block}: angular velocity then"),
+            found(name).map(|f| f[1]),
+            Rule::Report(Some(1.0)),
+            "it spreads by its own centrifugal force and what the start's lattice presses",
+        ));
+    }
+    let plain = "the block of 8 rows with rotation = \"off\"";
+    metrics.push(Metric::new(
+        format!("{plain}: gamma over omega"),
+        found(PLAIN).and_then(|_| strain_of_rotation(TURNING[0].1, "off")),
+        Rule::Report(None),
+        "what free faces add in the plain form",
+    ));
+    metrics.push(Metric::new(
+        format!("{plain}: angular velocity after 1 rad"),
+        found(PLAIN).map(|f| f[1]),
+        Rule::Report(Some(1.0)),
+        "angular momentum is given back, but its faces shear",
+    ));
+    metrics
+}
+
 fn analyse(results: &Results) -> Result<Report, String> {
     let law = 1.24 * 0.90;
     let frames = results.finished("at_rest").zip(results.finished("moving"));
@@ -134,7 +234,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
         .finished("at_rest")
         .and_then(|r| Some(r.last("gauge.front_right.front")? / R0 - 1.0));
     let block = results.finished("free_fall").and_then(acceleration);
-    let metrics = vec![
+    let mut metrics = vec![
         Metric::new(
             "mu_s = 2.0, mu_2 = 2.5: run-out",
             run_out(results, "rough"),
@@ -172,6 +272,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
             "it did move",
         ),
     ];
+    metrics.extend(turning_metrics(results));
     Ok(Report {
         metrics,
         ..Report::default()

@@ -8,7 +8,7 @@ use crate::validate::bagnold::Layer;
 use crate::validate::statistics::{interpolate, mean, rms};
 use crate::validate::{Effort, Member, Metric, Report, Results, Rule, Study};
 use measure::{WINDOW, mean_velocity, pressure_error, velocity_errors, window, worst_second};
-use runs::{DEPTH, FLOWS, GRAVITY, Run, START, STIFF, STOPS, THIN};
+use runs::{DEPTH, FLOWS, GRAVITY, Run, START, STIFF, STOPS, THIN, TURNS};
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -31,6 +31,7 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
     FLOWS
         .iter()
         .chain(&STIFF)
+        .chain(&TURNS)
         .chain(&THIN)
         .chain([&START])
         .chain(&STOPS)
@@ -55,6 +56,9 @@ fn analyse(results: &Results) -> Result<Report, String> {
         Rule::Report(None),
         "compression is the same at any spacing",
     ));
+    report
+        .metrics
+        .extend(TURNS.iter().map(|run| turns(results, run)));
     report
         .metrics
         .extend(THIN.iter().map(|run| thin(results, run)));
@@ -128,6 +132,19 @@ fn steady(results: &Results, run: &Run) -> Vec<Metric> {
             "exact; noise included, a prototype reached 1.1 %",
         ),
     ]
+}
+
+/// What a surface costs that turns without stress (docs/theory.md, T1).
+fn turns(results: &Results, run: &Run) -> Metric {
+    Metric::new(
+        format!(
+            "{} at {} deg, {} particles over the depth, with rotation = \"all\": velocity, L2",
+            run.preset, run.slope, run.rows
+        ),
+        l2(results, run),
+        Rule::Report(None),
+        "in the surface row friction is more than mu(I) times the pressure that goes through the same sums: why it is not the default",
+    )
 }
 
 /// Mean velocity of a thin layer: what the front of a flow is like.

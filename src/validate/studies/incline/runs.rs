@@ -36,6 +36,8 @@ pub(super) struct Run {
     pub(super) smoothing: f64,
     /// Sound speed over the default's.
     stiffness: f64,
+    /// Whose rotation makes no stress.
+    rotation: &'static str,
     start: Start,
     /// End [s].
     until: f64,
@@ -50,6 +52,7 @@ pub(super) const BASE: Run = Run {
     diameter: 5e-3,
     smoothing: 1.6,
     stiffness: 1.0,
+    rotation: "cohesive",
     start: Start::Profile,
     until: 10.0,
 };
@@ -118,6 +121,27 @@ pub(super) const STIFF: [Run; 2] = [
         name: "stiff_25_fine",
         rows: 40,
         stiffness: 2.0,
+        ..BASE
+    },
+];
+
+/// Some of [`FLOWS`] with sand that turns without stress, too.
+pub(super) const TURNS: [Run; 3] = [
+    Run {
+        name: "turns_25",
+        rotation: "all",
+        ..BASE
+    },
+    Run {
+        name: "turns_25_fine",
+        rows: 40,
+        rotation: "all",
+        ..BASE
+    },
+    Run {
+        name: "turns_28",
+        slope: 28.0,
+        rotation: "all",
         ..BASE
     },
 ];
@@ -213,6 +237,7 @@ impl Run {
             .with("numerics.spacing", spacing)
             .with("numerics.smoothing_ratio", self.smoothing)
             .with("numerics.expected_speed", self.speed())
+            .with("numerics.rotation", self.rotation)
             .with("materials.grains.preset", self.preset)
             .with("materials.grains.grain_diameter", self.diameter)
             .with("bodies.layer.box", rectangle([0.0, 0.0], [period, DEPTH]))
