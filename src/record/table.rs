@@ -1,8 +1,9 @@
 //! The scalars of a log side by side: one row a communication point, the columns of the run's `gauges.csv`. Rows of
 //! steps that were taken back are left out.
 
+use super::ending::Ending;
 use super::error::ReadError;
-use super::raw::{Ending, RawEntry, RawReader};
+use super::raw::{RawEntry, RawReader};
 use super::read::{Body, decode};
 use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
 use crate::scene;
