@@ -4,6 +4,7 @@
 use sandgate::component::{Component, StepReport, Wish};
 use sandgate::fmi::FmiVersion;
 
+use crate::asked::Asked;
 use crate::fault::Fault;
 
 /// As `sandgate::wire::Moment`.
@@ -37,7 +38,9 @@ impl Journal {
 
     pub(crate) fn asks_set(&mut self, _: &Component, _: &[u32], _: &[f64]) {}
 
-    pub(crate) fn asks(&mut self, _: &Component) {}
+    pub(crate) fn asks(&mut self, _: &Component, _: &Asked<'_>) {}
+
+    pub(crate) fn refuses(&mut self, _: &Component, _: &Asked<'_>) {}
 
     pub(crate) fn moment(&mut self, _: &Component, _: &Moment) {}
 

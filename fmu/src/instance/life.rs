@@ -3,6 +3,7 @@
 use sandgate::component::{Component, Error, Intermediate, Mode, StepReport};
 
 use super::{Experiment, Instance};
+use crate::asked::Asked;
 use crate::fault::{Fault, Status};
 use crate::guard::Door;
 use crate::journal::Journal;
@@ -35,7 +36,7 @@ impl Instance {
         }
         left?;
         if opened {
-            self.journal.asks(&self.component);
+            self.journal.asks(&self.component, &Asked::Nothing);
             self.journal.initialized(&self.component)?;
         }
         self.event(|| format!("initialised at t = {} s", self.component.time()));
@@ -95,7 +96,7 @@ impl Instance {
 
     /// Back to start values. After a breakdown nothing of the old component is used again.
     pub(crate) fn reset(&mut self) -> Result<(), Fault> {
-        self.journal.asks(&self.component);
+        self.journal.asks(&self.component, &Asked::Nothing);
         if self.broken.is_some() {
             self.component = self.component.anew()?;
             self.broken = None;
@@ -112,7 +113,7 @@ impl Instance {
 
     /// Stepping -> terminated, with the end of the log.
     pub(crate) fn terminate(&mut self) -> Result<(), Fault> {
-        self.journal.asks(&self.component);
+        self.journal.asks(&self.component, &Asked::Nothing);
         self.component.terminate()?;
         self.journal.reply(&self.component, Ok(()));
         self.journal.finish(&self.component, "terminated")
