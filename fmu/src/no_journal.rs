@@ -48,7 +48,7 @@ impl Journal {
 
     pub(crate) fn reply(&mut self, _: &Component, _: Result<(), &Fault>) {}
 
-    pub(crate) fn open(&mut self, _: &Component) -> Result<bool, Fault> {
+    pub(crate) fn open(&mut self, _: &Component, _: f64) -> Result<bool, Fault> {
         Ok(false)
     }
 

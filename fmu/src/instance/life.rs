@@ -12,23 +12,30 @@ use crate::log::Category;
 impl Instance {
     /// Leaves initialisation: the first gauges are there.
     pub(crate) fn exit_initialization(&mut self) -> Result<(), Fault> {
-        self.leave_initialization(Mode::Initialization, Component::exit_initialization)
+        let start = self.component.time();
+        self.leave_initialization(
+            (Mode::Initialization, start),
+            Component::exit_initialization,
+        )
     }
 
     /// Enters and leaves initialisation in one.
     pub(crate) fn initialize(&mut self, start: f64, stop: Option<f64>) -> Result<(), Fault> {
-        self.leave_initialization(Mode::Instantiated, |c| c.initialize(start, stop))
+        let leave = |c: &mut Component| c.initialize(start, stop);
+        let left = self.leave_initialization((Mode::Instantiated, start), leave);
+        left.inspect_err(|_| self.refuses(&Asked::Times(start, stop)))
     }
 
-    /// The log is opened before, so that a path that cannot be written is refused and nothing has happened.
+    /// The log is opened before, so that a path that cannot be written is refused and nothing has happened. `start` is where
+    /// the component is going to be then [s].
     fn leave_initialization(
         &mut self,
-        from: Mode,
+        (from, start): (Mode, f64),
         leave: impl FnOnce(&mut Component) -> Result<(), Error>,
     ) -> Result<(), Fault> {
         let opened = self.component.mode() == from && {
             self.component.settle()?;
-            self.journal.open(&self.component)?
+            self.journal.open(&self.component, start)?
         };
         let left = leave(&mut self.component);
         if opened && left.is_err() {

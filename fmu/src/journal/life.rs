@@ -10,8 +10,9 @@ use super::{Journal, told};
 use crate::fault::Fault;
 
 impl Journal {
-    /// Initialisation is about to end: begins the log and opens the network, if there shall be any. Gives whether it did.
-    pub(crate) fn open(&mut self, component: &Component) -> Result<bool, Fault> {
+    /// Initialisation is about to end, at `start` [s]: begins the log and opens the network, if there shall be any. Gives
+    /// whether it did.
+    pub(crate) fn open(&mut self, component: &Component, start: f64) -> Result<bool, Fault> {
         let HostSettings {
             log_path,
             zenoh_config,
@@ -25,7 +26,7 @@ impl Journal {
             self.connect(component)?;
         }
         if logs {
-            match self.create(component, "start") {
+            match self.create(component, ("start", start)) {
                 Ok(log) => self.log = Some(log),
                 Err(fault) => {
                     self.discard();
@@ -70,7 +71,11 @@ impl Journal {
         Ok(())
     }
 
-    fn create(&mut self, component: &Component, reason: &str) -> Result<Recorder, Fault> {
+    fn create(
+        &mut self,
+        component: &Component,
+        (reason, start): (&str, f64),
+    ) -> Result<Recorder, Fault> {
         let settings = component.host_settings();
         // Importers change the directory as they like; the file stays where it is meant now.
         let path = std::path::absolute(&settings.log_path)
@@ -79,6 +84,7 @@ impl Journal {
             required: settings.log_required,
             reason: reason.to_owned(),
             ..RecordOptions::of(component)
+            begins: Some(start),
         };
         if !self.instance.is_empty() {
             options.instance.clone_from(&self.instance);
@@ -133,7 +139,7 @@ impl Journal {
             }
         }
         if self.log.is_none() && !settings.log_path.is_empty() {
-            self.log = Some(self.create(component, "restored")?);
+            self.log = Some(self.create(component, ("restored", component.time()))?);
         }
         Ok(())
     }
