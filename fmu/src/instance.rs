@@ -214,7 +214,7 @@ impl Instance {
         self.journal.asks(&self.component, &asked);
         for (reference, text) in references.iter().zip(texts) {
             if let Some(row) = self.component.variables().by_reference(*reference) {
-                Journal::check_text(&row.name, text)?;
+                self.journal.check_text(&row.name, text)?;
             }
         }
         Ok(self.component.set_texts(references, texts)?)

@@ -75,10 +75,14 @@ impl Journal {
     }
 
     /// A text that this library can do nothing with is refused when it is set.
-    pub(crate) fn check_text(name: &str, text: &str) -> Result<(), Fault> {
+    pub(crate) fn check_text(&self, name: &str, text: &str) -> Result<(), Fault> {
+        let remedy = match self.version {
+            Some(_) => "pack the FMU with `sandgate fmu --zenoh` (fmu/README.md)",
+            None => "link -lsandgate_fmu_zenoh (docs/c.md)",
+        };
         match Network::REFUSAL {
             Some(why) if name == "zenoh.config" && !text.is_empty() => Err(Fault::border(format!(
-                "{name}: found {text:?}, allowed \"\": {why}"
+                "{name}: found {text:?}, allowed \"\": {why}{remedy}"
             ))),
             _ => Ok(()),
         }

@@ -23,7 +23,7 @@ impl Journal {
         Self
     }
 
-    pub(crate) fn check_text(name: &str, text: &str) -> Result<(), Fault> {
+    pub(crate) fn check_text(&self, name: &str, text: &str) -> Result<(), Fault> {
         if text.is_empty() {
             return Ok(());
         }

@@ -10,6 +10,7 @@
 //!
 //! [`Component`]: crate::component::Component
 
+mod advice;
 mod answered;
 mod endpoints;
 mod error;
@@ -33,6 +34,7 @@ mod watch;
 
 pub use answered::REMEMBERED;
 pub use endpoints::{BadEndpoint, DEFAULT_LISTEN};
+pub use advice::Advice;
 pub use error::BusError;
 pub use keys::Keys;
 pub use protocol::Protocol;

@@ -4,6 +4,7 @@ Run by tests/it/fmu.rs, which packs the FMUs with the library that has Zenoh.
 
 SANDGATE_PROGRAM  the program
 SANDGATE_PLAIN    the FMU without Zenoh
+SANDGATE_PLAIN_LIBRARY  the library without Zenoh
 """
 
 import ctypes
@@ -198,10 +199,12 @@ def test_bad_configurations_are_refused_and_can_be_corrected(version, tmp_path):
     cases = {
         "{listen: 7}": "Zenoh configuration",
         str(unreachable): "none.json5",
-        "{%s}" % open_one: "can be reached from other machines",
+        "/dev/zero": "found a folder, device or pipe",
+        "{%s}" % open_one: "add metadata: {sandgate: {allow_open_listener: true}}",
+        "{metadata: {sandgate: 7}}": "found 7, allowed an object",
         "{metadata: {sandgate: {instance: 'A b'}}}": "a-z 0-9",
         "{metadata: {sandgate: {open: true}}}": "allow_open_listener",
-        "{listen: {endpoints: ['%s']}}" % taken.endpoint: "port in use",
+        "{listen: {endpoints: ['%s']}}" % taken.endpoint: "port in use? choose another by listen:",
     }
     fmu.fmu.enterInitializationMode()
     for config, why in cases.items():
@@ -273,5 +276,10 @@ def test_an_fmu_without_zenoh_says_how_to_get_it():
     with pytest.raises(FMICallException):
         fmu.set("zenoh.config", "{}")
     assert "sandgate fmu --zenoh" in fmu.messages[-1][2]
+    library = Library(os.environ["SANDGATE_PLAIN_LIBRARY"], PATH)
+    reference = ctypes.c_uint32(library.references["zenoh.config"])
+    assert library.lib.sandgate_set_text(library.handle, reference, b"{}") == 3
+    assert b"link -lsandgate_fmu_zenoh" in library.lib.sandgate_last_error(library.handle)
+    library.free()
     fmu.set("zenoh.config", "")
     fmu.free()

@@ -18,7 +18,8 @@ pub use self::outlet::Outlet;
 
 use self::desk::{Desk, Entrances};
 use self::press::Press;
-use self::replies::send_replies;
+use self::replies::{ended, send_replies};
+use super::advice::Advice;
 use super::error::{BusError, words};
 use super::keys::Keys;
 use super::protocol::Protocol;
@@ -59,6 +60,8 @@ pub struct ServeOptions {
     pub lost: Option<Lost>,
 }
 
+    /// Who reads errors.
+    pub advice: Advice,
 /// Zenoh's own configuration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ZenohConfig {
