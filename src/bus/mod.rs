@@ -20,6 +20,7 @@ mod keys;
 mod protocol;
 mod publish;
 mod reach;
+mod queue;
 mod refusal;
 mod reply;
 mod request;

@@ -11,7 +11,8 @@ use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn, wanted};
 use crate::bus::Protocol;
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
-use crate::bus::publish::{LastValues, Publisher, WAITING_BATCHES};
+use crate::bus::publish::{LastValues, Publisher};
+use crate::bus::queue::queue;
 use crate::bus::reach::Reach;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::set_point::SetPoint;
@@ -56,7 +57,7 @@ impl Beside {
         let options = wanted::named(options)?;
         let keys = Keys::new(&options.instance)?;
         let (session, reach) = session::open(&options, Some(&keys))?;
-        let (batches, publications) = sync_channel(WAITING_BATCHES);
+        let (batches, publications) = queue();
         let (jobs, replies) = sync_channel(WAITING_REPLIES);
         let (task_queue, tasks) = sync_channel(WAITING_TASKS);
         let (note_queue, notes) = sync_channel(WAITING_NOTES);
@@ -73,7 +74,7 @@ impl Beside {
         );
         let press = Press::new(session.clone(), &keys, particles_wanted)?;
         let threads = vec![
-            spawn("sandgate-publish", move || press.run(&publications))?,
+            spawn("sandgate-publish", move || press.run(publications))?,
             spawn("sandgate-reply", move || send_replies(&replies, &last))?,
         ];
         let aside = Arc::new(Aside {

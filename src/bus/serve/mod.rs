@@ -23,7 +23,8 @@ use super::advice::Advice;
 use super::error::{BusError, words};
 use super::keys::Keys;
 use super::protocol::Protocol;
-use super::publish::{LastValues, Publisher, WAITING_BATCHES};
+use super::publish::{LastValues, Publisher};
+use super::queue::queue;
 use super::reach::Reach;
 use super::status::Shared;
 use super::stepping::Stepper;
@@ -112,7 +113,7 @@ impl Server {
         let (session, reach) = session::open(options, Some(&keys))?;
         let mut protocol = Protocol::new(keys.base(), options.realtime_factor);
 
-        let (batches, publications) = sync_channel(WAITING_BATCHES);
+        let (batches, publications) = queue();
         let (jobs, replies) = sync_channel(WAITING_REPLIES);
         let (task_queue, tasks) = sync_channel(WAITING_TASKS);
         let (note_queue, notes) = sync_channel(WAITING_NOTES);
@@ -129,7 +130,7 @@ impl Server {
         );
         let press = Press::new(session.clone(), &keys, particles_wanted)?;
         let threads = vec![
-            spawn("sandgate-publish", move || press.run(&publications))?,
+            spawn("sandgate-publish", move || press.run(publications))?,
             spawn("sandgate-reply", move || send_replies(&replies, &last))?,
         ];
         protocol.begin(&mut component, &mut Both(observer, &mut publisher), "serve")?;
