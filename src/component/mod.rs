@@ -219,7 +219,10 @@ impl Component {
             return refuse(
                 "stop time",
                 stop,
-                format!("a finite time from {} s, the start, on", shown(start)),
+                format!(
+                    "a finite time from {} s, the start, on, or none (INFINITY in C)",
+                    shown(start)
+                ),
             );
         }
         Ok(())
