@@ -70,6 +70,12 @@ impl Journal {
         Ok(())
     }
 
+    pub(crate) fn listens(&self) -> bool {
+        false
+    }
+
+    pub(crate) fn during_step(&mut self) {}
+
     pub(crate) fn step(
         &mut self,
         _: &Component,

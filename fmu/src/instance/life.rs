@@ -1,6 +1,6 @@
 //! What an instance goes through: initialisation, steps, reset, its end; each with what its log is told.
 
-use sandgate::component::{Component, Error, Intermediate, Mode, StepReport};
+use sandgate::component::{Component, Error, Intermediate, Mode, StepReport, Wish};
 
 use super::{Experiment, Instance};
 use crate::asked::Asked;
@@ -52,7 +52,15 @@ impl Instance {
 
     /// One communication step.
     pub(crate) fn step(&mut self, t: f64, h: f64) -> Result<StepReport, Fault> {
-        self.step_with(t, h, |component, _, t, h| component.do_step(t, h))
+        self.step_with(t, h, |component, journal, t, h| {
+            if !journal.listens() {
+                return component.do_step(t, h);
+            }
+            component.do_step_watched(t, h, &mut |_| {
+                journal.during_step();
+                Wish::GoOn
+            })
+        })
     }
 
     /// One communication step with the importer's intermediate updates, if it wants any.
@@ -67,8 +75,10 @@ impl Instance {
         };
         let log = self.log.clone();
         self.step_with(t, h, |component, journal, t, h| {
-            let mut tell =
-                |moment: &mut Intermediate<'_>| updates.tell(moment, &log, journal, door);
+            let mut tell = |moment: &mut Intermediate<'_>| {
+                journal.during_step();
+                updates.tell(moment, &log, journal, door)
+            };
             component.do_step_watched(t, h, &mut tell)
         })
     }

@@ -3,10 +3,11 @@
 use sandgate::component::{Causality, Component, HostSettings, Start, ValueKind};
 use sandgate::fmi;
 use sandgate::record::{RecordOptions, Recorder};
+use sandgate::wire::Unobserved;
 use sandgate::wire::messages::AppliedEvent;
 
 use super::network::Network;
-use super::{Journal, told};
+use super::{Journal, listener, told};
 use crate::fault::Fault;
 
 impl Journal {
@@ -83,8 +84,8 @@ impl Journal {
         let mut options = RecordOptions {
             required: settings.log_required,
             reason: reason.to_owned(),
-            ..RecordOptions::of(component)
             begins: Some(start),
+            ..RecordOptions::of(component)
         };
         if !self.instance.is_empty() {
             options.instance.clone_from(&self.instance);
@@ -121,7 +122,7 @@ impl Journal {
     fn disconnect(&mut self) {
         self.owned.clear();
         if let Some(network) = self.network.take()
-            && let Err(why) = network.close()
+            && let Err(why) = network.close(listener(&mut self.log, &mut Unobserved))
         {
             self.complaint = Some(why);
         }
@@ -146,12 +147,13 @@ impl Journal {
 
     /// The component was reset, or is no longer what it was: nothing more is told.
     pub(crate) fn end(&mut self, reason: &str) {
+        // First, so that the log has what was asked to the last.
+        self.disconnect();
         if let Some(log) = self.take()
             && let Err(error) = log.end(reason)
         {
             self.complaint = Some(error.to_string());
         }
-        self.disconnect();
     }
 
     /// The log, and remembers how often its component has jumped.
