@@ -222,6 +222,28 @@ def test_bad_configurations_are_refused_and_can_be_corrected(version, tmp_path):
     taken.__exit__()
 
 
+@both
+def test_its_log_has_what_was_asked_to_the_last(version, tmp_path):
+    path = tmp_path / "run.mcap"
+    with Published(version, log__path=str(path)) as it:
+        it.fmu.step(0.0, H)
+        it.client.ask("get", outputs=[GATE])
+        it.point(GATE, 0.25)
+        for n in range(3):
+            [reply] = it.session.get(f"{it.client.base}/@rpc/verb{n}", payload="{}")
+            assert json.loads(reply.ok.payload.to_string())["code"] == "bad_request"
+    said = subprocess.run([PROGRAM, "log", "cat", "--json", path], capture_output=True, text=True, check=True).stdout
+    asked = {}
+    for line in map(json.loads, said.splitlines()):
+        if line["topic"].startswith(f"{BASE}/@rpc/") or "/@in/" in line["topic"]:
+            asked.setdefault(line["topic"].removeprefix(f"{BASE}/"), []).append(line["value"])
+    assert [a["verb"] for a in asked["@rpc/unknown/request"]] == ["verb0", "verb1", "verb2"]
+    assert len(asked["@rpc/get/request"]) == len(asked["@rpc/get/reply"]) == 1
+    # No step followed that could have used it.
+    [point] = asked["@in/set-point/request"]
+    assert (point["verb"], point["client"], point["status"]) == (GATE, "plc", "state")
+
+
 def open_things():
     return len(os.listdir("/proc/self/task")), len(os.listdir("/proc/self/fd"))
 
