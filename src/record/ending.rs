@@ -44,7 +44,7 @@ impl std::fmt::Display for Ending {
             } => {
                 write!(
                     f,
-                    "complete at byte {byte}, but {more} bytes follow its end, and were not read"
+                    "complete at byte {byte}; {more} bytes follow its end and were not read"
                 )?;
                 match is_log {
                     true => write!(

@@ -208,7 +208,7 @@ fn bytes_behind_the_end_are_told_and_are_no_part_of_the_log() {
     ] {
         let path = folder.path().join(format!("{name}.mcap"));
         std::fs::write(&path, [&log[..], &more].concat()).unwrap();
-        let behind = format!("but {} bytes follow its end", more.len());
+        let behind = format!("; {} bytes follow its end and were not read", more.len());
         let said = |words: &[&str]| {
             let words = words.iter().map(OsStr::new);
             let all: Vec<_> = [OsStr::new("log")].into_iter().chain(words).collect();
