@@ -113,6 +113,8 @@ pub(crate) trait Values {
     fn set(&mut self, references: &[u32], values: &[f64]) -> Result<(), Fault>;
     /// As `Component::output_derivatives`.
     fn slopes(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault>;
+    /// The call that is running is going to be refused.
+    fn refused(&mut self, _: &[u32]) {}
 }
 
 /// Reads variables of kind `V` into `count` places; `make` turns each value into what C holds.
@@ -123,10 +125,12 @@ pub(crate) fn get<V: Value, C: Plain>(
     count: usize,
     make: impl Fn(V) -> C,
 ) -> Result<(), Fault> {
-    out.check(count, "values")?;
-    check(from.table(), "get", references, V::KIND, count)?;
+    let fits = out.check(count, "values");
+    let fits = fits.and_then(|()| check(from.table(), "get", references, V::KIND, count));
+    fits.inspect_err(|_| from.refused(references))?;
     let mut values = vec![0.0; count];
-    from.get(references, &mut values)?;
+    let got = from.get(references, &mut values);
+    got.inspect_err(|_| from.refused(references))?;
     let made: Result<Vec<C>, String> = values
         .iter()
         .map(|value| V::leave(*value).map(&make))
@@ -141,7 +145,8 @@ pub(crate) fn set<V: Value, C: Copy>(
     values: &[C],
     make: impl Fn(C) -> Result<V, String>,
 ) -> Result<(), Fault> {
-    check(into.table(), "set", references, V::KIND, values.len())?;
+    let fits = check(into.table(), "set", references, V::KIND, values.len());
+    fits.inspect_err(|_| into.refused(references))?;
     let entered: Result<Vec<f64>, String> = values
         .iter()
         .map(|value| make(*value).and_then(V::enter))

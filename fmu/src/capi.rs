@@ -10,6 +10,7 @@ use std::ffi::c_char;
 use sandgate::component::Mode;
 use sandgate::scene::{self, Scene, SceneErrors};
 
+use crate::asked::Asked;
 use crate::fault::Fault;
 use crate::guard::{
     CLedger, CStepReport, Environment, Handle, Need, Out, PlainLogger, Text, inside, shield,
@@ -18,9 +19,6 @@ use crate::instance::Instance;
 use crate::log::{Log, Sink};
 
 const ABI_VERSION: u32 = 1;
-/// What `solver.threads` allows too.
-const MOST_THREADS: u32 = 256;
-
 /// `sandgate_capability`: bits of what this library can do. The first five are always there.
 const CAPABILITIES: u32 = 0b1_1111 | RECORD | PUBLISH;
 /// Whether it writes logs.
@@ -151,7 +149,11 @@ pub(crate) extern "C" fn sandgate_enter_initialization(
 ) -> i32 {
     code(
         instance.call("sandgate_enter_initialization", Need::Sound, |i| {
-            Ok(i.component.enter_initialization(start, end(stop))?)
+            let entered = i.component.enter_initialization(start, end(stop));
+            Ok(entered.inspect_err(|_| {
+                i.journal
+                    .refuses(&i.component, &Asked::Times(start, end(stop)))
+            })?)
         }),
     )
 }
@@ -244,12 +246,6 @@ pub(crate) extern "C" fn sandgate_terminate(instance: Handle) -> i32 {
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn sandgate_set_threads(instance: Handle, threads: u32) -> i32 {
     code(instance.call("sandgate_set_threads", Need::Sound, |i| {
-        if threads > MOST_THREADS {
-            return Err(Fault::border(format!(
-                "found {threads} threads, allowed 0 (all cores) to {MOST_THREADS}"
-            )));
-        }
-        i.set_threads(threads as usize);
-        Ok(())
+        i.set_threads(threads)
     }))
 }

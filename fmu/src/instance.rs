@@ -10,11 +10,15 @@ use sandgate::fmi::{self, FmiVersion};
 use sandgate::scene::{self, Scene};
 
 use crate::access::Values;
+use crate::asked::Asked;
 use crate::fault::{Fault, Status};
 use crate::guard::{Handle, Text, embedded_scene, inside, shield};
 use crate::journal::Journal;
 use crate::log::{Category, Log, text};
 use crate::updates::Updates;
+
+/// What `solver.threads` allows too.
+const MOST_THREADS: u32 = 256;
 
 /// FMI 2's setupExperiment: importers may leave it out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -79,6 +83,10 @@ impl Values for Instance {
 
     fn slopes(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Fault> {
         Ok(self.component.output_derivatives(references, values)?)
+    }
+
+    fn refused(&mut self, references: &[u32]) {
+        self.refuses(&Asked::Variables(references));
     }
 }
 
@@ -195,11 +203,18 @@ impl Instance {
         }
     }
 
+    /// The call that is running is going to be refused: its log has what was asked.
+    pub(crate) fn refuses(&mut self, asked: &Asked<'_>) {
+        self.journal.refuses(&self.component, asked);
+    }
+
     /// Sets texts, all or none.
     pub(crate) fn set_texts(&mut self, references: &[u32], texts: &[&str]) -> Result<(), Fault> {
+        let asked = Asked::Texts(references, texts);
+        self.journal.asks(&self.component, &asked);
         for (reference, text) in references.iter().zip(texts) {
             if let Some(row) = self.component.variables().by_reference(*reference) {
-                Journal::check_text(&row.name, text)?;
+                self.journal.check_text(&row.name, text)?;
             }
         }
         Ok(self.component.set_texts(references, texts)?)
@@ -221,8 +236,19 @@ impl Instance {
     }
 
     /// Threads of the sweeps; 0 means all cores. Results do not depend on it.
-    pub(crate) fn set_threads(&mut self, threads: usize) {
-        self.component.set_threads(threads);
+    ///
+    /// # Errors
+    /// More than a scene may ask for.
+    pub(crate) fn set_threads(&mut self, threads: u32) -> Result<(), Fault> {
+        let asked = Asked::Threads(threads);
+        self.journal.asks(&self.component, &asked);
+        if threads > MOST_THREADS {
+            return Err(Fault::border(format!(
+                "found {threads} threads, allowed 0 (all cores) to {MOST_THREADS}"
+            )));
+        }
+        self.component.set_threads(threads as usize);
+        Ok(())
     }
 
     /// Switches log categories by their names.

@@ -75,10 +75,14 @@ impl Journal {
     }
 
     /// A text that this library can do nothing with is refused when it is set.
-    pub(crate) fn check_text(name: &str, text: &str) -> Result<(), Fault> {
+    pub(crate) fn check_text(&self, name: &str, text: &str) -> Result<(), Fault> {
+        let remedy = match self.version {
+            Some(_) => "pack the FMU with `sandgate fmu --zenoh` (fmu/README.md)",
+            None => "link -lsandgate_fmu_zenoh (docs/c.md)",
+        };
         match Network::REFUSAL {
             Some(why) if name == "zenoh.config" && !text.is_empty() => Err(Fault::border(format!(
-                "{name}: found {text:?}, allowed \"\": {why}"
+                "{name}: found {text:?}, allowed \"\": {why}{remedy}"
             ))),
             _ => Ok(()),
         }
@@ -126,15 +130,26 @@ impl Journal {
             return Err(told(RecordError::Required(failure)));
         }
         if let Some(network) = &mut self.network {
-            let mut nobody = Unobserved;
-            let log: &mut dyn Observer = match &mut self.log {
-                Some(log) => log,
-                None => &mut nobody,
-            };
-            network.apply(component, &self.owned, log);
+            network.apply(
+                component,
+                &self.owned,
+                listener(&mut self.log, &mut Unobserved),
+            );
             self.owned.clear();
         }
         Ok(())
+    }
+
+    /// Whether something may come in while a step runs.
+    pub(crate) fn listens(&self) -> bool {
+        self.network.is_some()
+    }
+
+    /// Between internal steps: what was asked over the network meanwhile goes into the log.
+    pub(crate) fn during_step(&mut self) {
+        if let Some(network) = &mut self.network {
+            network.tell_notes(listener(&mut self.log, &mut Unobserved));
+        }
     }
 
     /// A step was done from `t` over `h` [s].
@@ -220,6 +235,14 @@ impl Journal {
             self.complaint = failure.or_else(|| trouble.map(|error| error.to_string()));
         }
         Ok(())
+    }
+}
+
+/// The log, or nobody.
+fn listener<'a>(log: &'a mut Option<Recorder>, nobody: &'a mut Unobserved) -> &'a mut dyn Observer {
+    match log {
+        Some(log) => log,
+        None => nobody,
     }
 }
 

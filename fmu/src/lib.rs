@@ -5,6 +5,7 @@
 #![allow(non_snake_case, reason = "the standards name the functions")]
 
 mod access;
+mod asked;
 mod capi;
 #[cfg(test)]
 mod contract;

@@ -4,6 +4,7 @@
 use sandgate::component::{Component, StepReport, Wish};
 use sandgate::fmi::FmiVersion;
 
+use crate::asked::Asked;
 use crate::fault::Fault;
 
 /// As `sandgate::wire::Moment`.
@@ -22,7 +23,7 @@ impl Journal {
         Self
     }
 
-    pub(crate) fn check_text(name: &str, text: &str) -> Result<(), Fault> {
+    pub(crate) fn check_text(&self, name: &str, text: &str) -> Result<(), Fault> {
         if text.is_empty() {
             return Ok(());
         }
@@ -37,7 +38,9 @@ impl Journal {
 
     pub(crate) fn asks_set(&mut self, _: &Component, _: &[u32], _: &[f64]) {}
 
-    pub(crate) fn asks(&mut self, _: &Component) {}
+    pub(crate) fn asks(&mut self, _: &Component, _: &Asked<'_>) {}
+
+    pub(crate) fn refuses(&mut self, _: &Component, _: &Asked<'_>) {}
 
     pub(crate) fn moment(&mut self, _: &Component, _: &Moment) {}
 
@@ -45,7 +48,7 @@ impl Journal {
 
     pub(crate) fn reply(&mut self, _: &Component, _: Result<(), &Fault>) {}
 
-    pub(crate) fn open(&mut self, _: &Component) -> Result<bool, Fault> {
+    pub(crate) fn open(&mut self, _: &Component, _: f64) -> Result<bool, Fault> {
         Ok(false)
     }
 
@@ -66,6 +69,12 @@ impl Journal {
     pub(crate) fn before_step(&mut self, _: &mut Component) -> Result<(), Fault> {
         Ok(())
     }
+
+    pub(crate) fn listens(&self) -> bool {
+        false
+    }
+
+    pub(crate) fn during_step(&mut self) {}
 
     pub(crate) fn step(
         &mut self,

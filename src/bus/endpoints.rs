@@ -1,6 +1,7 @@
 //! Which endpoints a server may listen on: loopback unless somebody says in so many words that it shall be open.
 //! Pure text; does not know Zenoh.
 
+use super::advice::Advice;
 use serde_json::Value;
 use std::net::{IpAddr, SocketAddr, TcpListener};
 
@@ -26,11 +27,14 @@ pub enum BadEndpoint {
     /// Reachable from other machines.
     #[error(
         "endpoint {found:?} can be reached from other machines, and everybody who reaches it can move gates and read \
-         states; listen on tcp/127.0.0.1:PORT, or say --allow-open-listener if the network is your own"
+         states; listen on tcp/127.0.0.1:PORT, or {} if the network is your own",
+        advice.open_listener()
     )]
     Open {
         /// The endpoint.
         found: String,
+        /// Who reads it.
+        advice: Advice,
     },
     /// No free port.
     #[error("no free port on {host}: {reason}")]
@@ -46,13 +50,18 @@ pub enum BadEndpoint {
 ///
 /// # Errors
 /// [`BadEndpoint::Form`]; [`BadEndpoint::Open`] for hosts other than loopback unless `open` is allowed.
-pub(super) fn check_listener(endpoint: &str, open: bool) -> Result<(), BadEndpoint> {
+pub(super) fn check_listener(
+    endpoint: &str,
+    open: bool,
+    advice: Advice,
+) -> Result<(), BadEndpoint> {
     let (_, host, _) = split(endpoint)?;
     if open || is_loopback(host) {
         Ok(())
     } else {
         Err(BadEndpoint::Open {
             found: endpoint.to_owned(),
+            advice,
         })
     }
 }
@@ -128,7 +137,11 @@ mod tests {
             "tcp/[::1]:0",
             "tcp/localhost:1",
         ] {
-            assert_eq!(check_listener(own, false), Ok(()), "{own}");
+            assert_eq!(
+                check_listener(own, false, Advice::CommandLine),
+                Ok(()),
+                "{own}"
+            );
         }
         for open in [
             "tcp/0.0.0.0:7447",
@@ -137,9 +150,17 @@ mod tests {
             "tcp/example.org:1",
             "tcp/127.0.0.1.example.org:1",
         ] {
-            let refusal = check_listener(open, false).unwrap_err().to_string();
-            assert!(refusal.contains("--allow-open-listener"), "{refusal}");
-            assert_eq!(check_listener(open, true), Ok(()), "{open}");
+            for (advice, words) in [
+                (Advice::CommandLine, "say --allow-open-listener"),
+                (
+                    Advice::Configuration,
+                    "{sandgate: {allow_open_listener: true}}",
+                ),
+            ] {
+                let refusal = check_listener(open, false, advice).unwrap_err().to_string();
+                assert!(refusal.contains(words), "{refusal}");
+                assert_eq!(check_listener(open, true, advice), Ok(()), "{open}");
+            }
         }
     }
 
@@ -153,7 +174,8 @@ mod tests {
             "tcp/:1",
             "tcp/h:70000",
         ] {
-            let refusal = check_listener(bad, true).unwrap_err().to_string();
+            let refused = check_listener(bad, true, Advice::CommandLine);
+            let refusal = refused.unwrap_err().to_string();
             assert!(refusal.contains("allowed is tcp/HOST:PORT"), "{refusal}");
         }
     }

@@ -1,5 +1,6 @@
 //! Why a server could not be opened or had to end.
 
+use super::advice::Advice;
 use super::endpoints::BadEndpoint;
 use crate::component;
 use crate::wire::keys::BadInstance;
@@ -52,11 +53,14 @@ pub enum BusError {
     },
     /// The name is taken.
     #[error(
-        "an instance {instance:?} is already served there; choose another name with --instance, or end the other one"
+        "an instance {instance:?} is already served there; choose another name {}, or end the other one",
+        advice.instance()
     )]
     Taken {
         /// The name.
         instance: String,
+        /// Who reads it.
+        advice: Advice,
     },
     /// A thread could not be started.
     #[error("cannot start a thread: {0}")]

@@ -1,7 +1,9 @@
 //! Fields of requests: JSON values → checked values, or a refusal that names the field, what was found and what is
 //! allowed.
 
+use super::json;
 use super::refusal::{Code, Refusal};
+use super::request::LONGEST_TOLD;
 use super::verb::Verb;
 use crate::wire::foxglove::LogLevel;
 use base64::Engine as _;
@@ -10,6 +12,33 @@ use serde_json::{Map, Value};
 
 pub(super) fn bad(message: String) -> Refusal {
     Refusal::new(Code::BadRequest, message)
+}
+
+/// Longest name, identifier or key that is repeated in messages and logs, in characters: as long as `req` may be.
+const LONGEST_NAME: usize = 64;
+
+/// A text from outside as far as it is repeated.
+pub(super) fn cut(text: &str) -> String {
+    match text.char_indices().nth(LONGEST_NAME) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// A text field of a body that was refused, so that it can be told; empty if there is none. A long body is not looked into:
+/// whoever sends it would have the callback of everybody work on it.
+pub(super) fn text_in(body: &[u8], field: &str) -> String {
+    if body.len() > LONGEST_TOLD {
+        return String::new();
+    }
+    match json::parse(body) {
+        Ok(Value::Object(map)) => map
+            .get(field)
+            .and_then(Value::as_str)
+            .unwrap_or_default()
+            .to_owned(),
+        _ => String::new(),
+    }
 }
 
 /// What a JSON value is, for messages.
@@ -44,11 +73,13 @@ fn wrong(field: &str, found: &Value, allowed: &str) -> Refusal {
 }
 
 pub(super) fn text(map: &mut Map<String, Value>, field: &str) -> Result<Option<String>, Refusal> {
-    let allowed = "a string of 1 to 64 characters";
+    let allowed = format!("a string of 1 to {LONGEST_NAME} characters");
     match map.remove(field) {
         None => Ok(None),
-        Some(Value::String(text)) if (1..=64).contains(&text.chars().count()) => Ok(Some(text)),
-        Some(other) => Err(wrong(field, &other, allowed)),
+        Some(Value::String(text)) if (1..=LONGEST_NAME).contains(&text.chars().count()) => {
+            Ok(Some(text))
+        }
+        Some(other) => Err(wrong(field, &other, &allowed)),
     }
 }
 

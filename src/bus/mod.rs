@@ -10,14 +10,17 @@
 //!
 //! [`Component`]: crate::component::Component
 
+mod advice;
 mod answered;
 mod endpoints;
 mod error;
 mod fields;
 mod json;
 mod keys;
+mod notes;
 mod protocol;
 mod publish;
+mod queue;
 mod reach;
 mod refusal;
 mod reply;
@@ -31,6 +34,7 @@ mod values;
 mod verb;
 mod watch;
 
+pub use advice::Advice;
 pub use answered::REMEMBERED;
 pub use endpoints::{BadEndpoint, DEFAULT_LISTEN};
 pub use error::BusError;

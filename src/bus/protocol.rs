@@ -10,6 +10,7 @@ mod step;
 mod verbs;
 
 use super::answered::{Answered, Earlier};
+use super::notes::Notes;
 use super::refusal::{Code, Refusal};
 use super::reply::Reply;
 use super::request::Request;
@@ -32,6 +33,7 @@ pub struct Protocol {
     free_running: Option<f64>,
     answered: Answered<Reply>,
     broken: bool,
+    notes: Option<Notes>,
 }
 
 /// Fields of a reply.
@@ -48,6 +50,23 @@ impl Protocol {
             free_running,
             answered: Answered::default(),
             broken: false,
+            notes: None,
+        }
+    }
+
+    /// With notes of what is answered elsewhere, for the log: they are told between internal steps, too, since a step may
+    /// last longer than the log may lag behind.
+    pub(super) fn with_notes(self, notes: Notes) -> Self {
+        Self {
+            notes: Some(notes),
+            ..self
+        }
+    }
+
+    /// Tells what was answered elsewhere since the last call.
+    pub(super) fn tell_notes(&self, component: &Component, observer: &mut dyn Observer) {
+        if let Some(notes) = &self.notes {
+            notes.tell(component.time(), observer);
         }
     }
 
@@ -159,7 +178,13 @@ impl Protocol {
         let h = step_end(time, component.scene().run.step) - time;
         let outcome = self.guarded(|protocol| {
             protocol.whole()?;
-            advance(component, h, "free-running", observer)
+            advance(
+                component,
+                h,
+                "free-running",
+                protocol.notes.as_ref(),
+                observer,
+            )
         });
         if outcome.is_err() {
             self.free_running = None;

@@ -1,8 +1,9 @@
 //! What happens to a component → messages for publication, handed to the publishing thread's bounded queue.
 //!
-//! An [`Observer`] like the log: it runs on the stepping thread, so it never waits. If the queue is full, the whole
-//! batch is dropped and counted; sequence numbers go on, so that a subscriber sees the gap. Does not know Zenoh.
+//! An [`Observer`] like the log: it runs on the stepping thread, so it never waits. What a full queue has no room for is
+//! counted; sequence numbers go on, so that a subscriber sees the gap. Does not know Zenoh.
 
+use super::queue::Giver;
 use super::status::{Shared, lock};
 use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::convert::{self, Output};
@@ -13,11 +14,7 @@ use crate::wire::{Described, Moment, Observer, Pending, keys, schema};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex};
-
-/// Batches that may wait for the publishing thread; one batch a communication step.
-pub(super) const WAITING_BATCHES: usize = 256;
 
 /// Something to publish.
 #[derive(Clone, Debug)]
@@ -38,7 +35,7 @@ pub(super) struct Publisher {
     pending: Pending,
     /// Counts batches: every output is published once a batch.
     sequence: u64,
-    queue: SyncSender<Vec<Publication>>,
+    queue: Giver,
     last: Arc<LastValues>,
     particles_wanted: Arc<AtomicBool>,
     shared: Arc<Shared>,
@@ -48,7 +45,7 @@ impl Publisher {
     pub(super) fn new(
         base: &str,
         component: &Component,
-        queue: SyncSender<Vec<Publication>>,
+        queue: Giver,
         last: Arc<LastValues>,
         particles_wanted: Arc<AtomicBool>,
         shared: Arc<Shared>,
@@ -76,10 +73,8 @@ impl Publisher {
             last.insert(publication.key.clone(), publication.clone());
         }
         drop(last);
-        let count = batch.len() as u64;
-        if self.queue.try_send(batch).is_err() {
-            self.shared.dropped_publications.fetch_add(count, Relaxed);
-        }
+        let lost = self.queue.give(batch);
+        self.shared.dropped_publications.fetch_add(lost, Relaxed);
     }
 
     /// All outputs, the figures of the solver, where the gates are, and the particles if somebody wants them.

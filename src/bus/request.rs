@@ -101,21 +101,10 @@ impl Request {
         )))
     }
 
-    /// `req` of a body that could not be read as a request, so that its refusal can name it. A long one is not looked
-    /// into: whoever sends it would have the callback of everybody work on it.
+    /// `req` of a body that could not be read as a request, so that its refusal can name it.
     #[must_use]
     pub fn req_of(body: &[u8]) -> String {
-        if body.len() > LONGEST_TOLD {
-            return String::new();
-        }
-        match json::parse(body) {
-            Ok(Value::Object(map)) => map
-                .get("req")
-                .and_then(Value::as_str)
-                .unwrap_or_default()
-                .to_owned(),
-            _ => String::new(),
-        }
+        fields::text_in(body, "req")
     }
 }
 

@@ -1,9 +1,12 @@
 //! Set-points as typed: what is published to `B/in/VARIABLE`.
 
-use super::fields::{bad, text, values};
+use super::fields::{bad, cut, text, text_in, values};
 use super::json;
 use super::refusal::{Code, Refusal};
 use serde_json::Value;
+
+/// Longest body that is kept after it was refused (bytes): values are far shorter.
+const LONGEST_REFUSED: usize = 4096;
 
 /// A set-point: a value, or `{"value": ..., "client": "..."}` to say who sent it.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +17,8 @@ pub struct SetPoint {
     pub values: Vec<f64>,
     /// Who sent it; may be empty.
     pub client: String,
+    /// As it came.
+    pub body: String,
 }
 
 impl SetPoint {
@@ -63,7 +68,20 @@ impl SetPoint {
             variable: variable.to_owned(),
             values: values(variable, &value)?,
             client,
+            body: String::from_utf8_lossy(body).into_owned(),
         })
+    }
+
+    /// What is kept of one that was refused, to tell it: not its values.
+    #[must_use]
+    pub(super) fn refused(variable: &str, body: &[u8]) -> Self {
+        let told = &body[..body.len().min(LONGEST_REFUSED)];
+        Self {
+            variable: cut(variable),
+            values: Vec::new(),
+            client: cut(&text_in(body, "client")),
+            body: String::from_utf8_lossy(told).into_owned(),
+        }
     }
 }
 
@@ -88,5 +106,15 @@ mod tests {
         ] {
             assert_eq!(read(body).unwrap_err().code, code, "{body}");
         }
+    }
+
+    #[test]
+    fn what_is_told_of_a_refused_one_is_who_sent_what_in_bounds() {
+        let told = SetPoint::refused("v", br#"{"value":7,"client":"plc"}"#);
+        assert_eq!(told.client, "plc");
+        assert_eq!(told.body, r#"{"value":7,"client":"plc"}"#);
+        let long = SetPoint::refused(&"v".repeat(60_000), &[b'7'; 60_000]);
+        assert_eq!(long.variable.len(), 67);
+        assert_eq!(long.body.len(), LONGEST_REFUSED);
     }
 }

@@ -5,11 +5,14 @@
 
 mod pace;
 
+use super::notes::{Exchange, command, tell_refused, tell_taken, tell_unlogged};
 use super::protocol::Protocol;
+use super::refusal::Refusal;
+use super::reply::Reply;
 use super::request::Request;
 use super::set_point::SetPoint;
 use super::status::{Busy, Shared};
-use super::tasks::{Asked, Exchange, Note, Task, WAITING_TASKS, command};
+use super::tasks::{Asked, Task, WAITING_TASKS};
 use super::watch::{Lost, Watch, WhenLost};
 use crate::component::Component;
 use crate::wire::Observer;
@@ -29,7 +32,6 @@ pub(super) struct Stepper<'a> {
     pub(super) protocol: Protocol,
     pub(super) shared: &'a Shared,
     pub(super) tasks: Receiver<Task>,
-    pub(super) notes: Receiver<Note>,
     pub(super) watch: Watch,
 }
 
@@ -40,7 +42,7 @@ impl Stepper<'_> {
         // Turns since the orchestrator's silence lasted too long.
         let mut overdue = 0;
         while !stop.load(Relaxed) {
-            self.write_notes(observer);
+            self.protocol.tell_notes(&self.component, observer);
             self.tell_trouble(observer);
             let wait = match self.protocol.free_running() {
                 None => {
@@ -90,7 +92,33 @@ impl Stepper<'_> {
                 }
             }
         }
-        self.write_notes(observer);
+    }
+
+    /// Nobody gets in any more. Who still waits is told why nothing comes of it, and the log is told all of it; gives the
+    /// component back.
+    pub(super) fn close(self, why: &Refusal, observer: &mut dyn Observer) -> Component {
+        let time = self.component.time();
+        while let Ok(task) = self.tasks.try_recv() {
+            match task {
+                Task::SetPoint(point) => tell_refused(time, &point, why, observer),
+                Task::Call {
+                    request,
+                    body,
+                    asked,
+                } => {
+                    let status = self.protocol.status(&self.component);
+                    let reply = Reply::refusal(&request.req, why, &status);
+                    let mut exchange = exchange(&request, body);
+                    (exchange.status, exchange.reply) = (reply.status(), reply.body.clone());
+                    asked.answer(reply);
+                    observer.on_command(&command(time, &mut exchange, CommandKind::Request));
+                    observer.on_reply(&command(time, &mut exchange, CommandKind::Reply));
+                }
+            }
+        }
+        self.protocol.tell_notes(&self.component, observer);
+        tell_unlogged(time, self.shared.unlogged_calls.load(Relaxed), observer);
+        self.component
     }
 
     /// Whether the server ends after it.
@@ -114,9 +142,13 @@ impl Stepper<'_> {
         let done = self
             .protocol
             .set_point(&mut self.component, point, observer);
-        if let Err(refusal) = done {
-            self.shared.refused_set_points.fetch_add(1, Relaxed);
-            self.warn(&format!("set-point refused: {refusal}"), observer);
+        let time = self.component.time();
+        match done {
+            Ok(()) => tell_taken(time, point, observer),
+            Err(refusal) => {
+                self.shared.refused_set_points.fetch_add(1, Relaxed);
+                tell_refused(time, point, &refusal, observer);
+            }
         }
         self.publish_status();
     }
@@ -134,14 +166,7 @@ impl Stepper<'_> {
             client: request.client.clone(),
             req: request.req.clone(),
         }));
-        let mut exchange = Exchange {
-            verb: request.verb.name().to_owned(),
-            req: request.req.clone(),
-            client: request.client.clone(),
-            body,
-            status: "",
-            reply: String::new(),
-        };
+        let mut exchange = exchange(request, body);
         observer.on_command(&command(
             self.component.time(),
             &mut exchange,
@@ -211,26 +236,6 @@ impl Stepper<'_> {
         self.shared.set_busy(None);
     }
 
-    fn write_notes(&mut self, observer: &mut dyn Observer) {
-        while let Ok(note) = self.notes.try_recv() {
-            match note {
-                Note::Refused(text) => self.warn(&text, observer),
-                Note::Call(mut exchange) => {
-                    observer.on_command(&command(
-                        self.component.time(),
-                        &mut exchange,
-                        CommandKind::Request,
-                    ));
-                    observer.on_reply(&command(
-                        self.component.time(),
-                        &mut exchange,
-                        CommandKind::Reply,
-                    ));
-                }
-            }
-        }
-    }
-
     fn warn(&self, text: &str, observer: &mut dyn Observer) {
         observer.on_log(self.component.time(), LogLevel::Warning, "bus", text);
     }
@@ -251,60 +256,17 @@ impl Stepper<'_> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::component::{Causality, ValueKind};
-    use crate::wire::Unobserved;
-    use std::sync::mpsc::sync_channel;
-
-    #[test]
-    fn set_points_that_keep_coming_are_no_orchestrator() {
-        let text = include_str!("../../tests/scenes/small_silo.toml");
-        let scene = crate::scene::parse("small_silo.toml", text).unwrap();
-        let mut component = Component::new(&scene).unwrap();
-        let mut protocol = Protocol::new("sandgate/v1/silo", None);
-        protocol
-            .begin(&mut component, &mut Unobserved, "test")
-            .unwrap();
-        let input = component.variables().rows().iter().find(|row| {
-            row.causality == Causality::Input && row.kind == ValueKind::Real && row.len() == 1
-        });
-        let body = |variable: &str| SetPoint::parse(variable, b"0.5").unwrap();
-        let point = body(&input.unwrap().name);
-        let shared = Shared::new(protocol.status(&component));
-        let (give, tasks) = sync_channel(WAITING_TASKS);
-        let (_keep, notes) = sync_channel(1);
-        let mut watch = Watch::new(Some(Lost {
-            after: Duration::from_millis(200),
-            then: WhenLost::Terminate,
-        }));
-        watch.hear();
-        let stop = AtomicBool::new(false);
-        std::thread::scope(|scope| {
-            scope.spawn(|| {
-                // Far more often than the stepping thread looks up.
-                for _ in 0..2000 {
-                    let sent = give.try_send(Task::SetPoint(point.clone()));
-                    let lost = shared.orchestrator_lost.load(Relaxed);
-                    if lost || sent.is_err() {
-                        break;
-                    }
-                    shared.waiting_set_points.fetch_add(1, Relaxed);
-                    std::thread::sleep(Duration::from_millis(5));
-                }
-                stop.store(true, Relaxed);
-            });
-            let mut stepper = Stepper {
-                component,
-                protocol,
-                shared: &shared,
-                tasks,
-                notes,
-                watch,
-            };
-            stepper.run(&mut Unobserved, &stop);
-        });
-        assert!(shared.orchestrator_lost.load(Relaxed));
+/// A request as the log has it, before its reply.
+fn exchange(request: &Request, body: String) -> Exchange {
+    Exchange {
+        verb: request.verb.name().to_owned(),
+        req: request.req.clone(),
+        client: request.client.clone(),
+        body,
+        status: "",
+        reply: String::new(),
     }
 }
+
+#[cfg(test)]
+mod tests;

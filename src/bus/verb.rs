@@ -1,5 +1,6 @@
 //! What may be asked: one row a verb.
 
+use super::fields::cut;
 use super::refusal::{Code, Refusal};
 
 /// What may be asked.
@@ -74,6 +75,7 @@ impl Verb {
             .map(|row| row.0)
             .ok_or_else(|| {
                 let known: Vec<_> = VERBS.iter().map(|row| row.1).collect();
+                let name = cut(name);
                 Refusal::new(
                     Code::BadRequest,
                     format!("unknown verb {name:?}; there are {}", known.join(", ")),
@@ -131,6 +133,8 @@ mod tests {
             assert_eq!(verb as usize, position);
             assert_eq!(Verb::from_name(verb.name()), Ok(verb));
         }
+        let names: Vec<_> = Verb::all().map(Verb::name).collect();
+        assert_eq!(names, crate::wire::keys::VERBS);
         let changing = Verb::all().filter(|verb| verb.changes() && !verb.drives());
         assert_eq!(changing.collect::<Vec<_>>(), [Verb::Log]);
         let refusal = Verb::from_name("stepp").unwrap_err();

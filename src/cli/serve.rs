@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::{CliError, load_scene, quantity, say, stop};
-use crate::bus::{Lost, ServeOptions, Server, WhenLost, ZenohConfig};
+use crate::bus::{Advice, Lost, ServeOptions, Server, WhenLost, ZenohConfig};
 use crate::component::{Component, Mode};
 use crate::wire::{Observer, Unobserved};
 use log::Log;
@@ -102,6 +102,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
                 Then::Terminate => WhenLost::Terminate,
             },
         }),
+        advice: Advice::CommandLine,
     };
     let mut component = Component::new(&scene)?;
     component.set_threads(usize::from(args.threads));

@@ -35,7 +35,7 @@ pub use error::{Error, Severity};
 pub use host::HostSettings;
 pub use points::{next_point, step_end};
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport, Totals};
-pub use snapshot::saved_checksum;
+pub use snapshot::{read_saved, saved_checksum};
 pub use status::Status;
 pub use variables::{
     Causality, Start, ValueKind, ValueReference, Variability, Variable, VariableTable,
@@ -219,7 +219,10 @@ impl Component {
             return refuse(
                 "stop time",
                 stop,
-                format!("a finite time from {} s, the start, on", shown(start)),
+                format!(
+                    "a finite time from {} s, the start, on, or none (INFINITY in C)",
+                    shown(start)
+                ),
             );
         }
         Ok(())

@@ -9,6 +9,7 @@ use crate::scene::MOST_PARTICLES;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
+use std::io::Read;
 
 /// First bytes of every saved state.
 const MARK: &[u8; 8] = b"SANDGATE";
@@ -94,6 +95,27 @@ pub(super) fn split<T: DeserializeOwned>(payload: &[u8]) -> Result<(T, &[u8]), S
 #[must_use]
 pub fn saved_checksum(bytes: &[u8]) -> Option<[u8; 32]> {
     bytes.get(PREFIX..HEADER)?.try_into().ok()
+}
+
+/// Reads saved bytes to the end that their header tells, and one more if there is one, so that what is too long is refused as
+/// such. Of what is no saved state, and of what says that it is larger than any, only the header is read: devices and pipes
+/// need not end.
+///
+/// # Errors
+/// Those of the source.
+pub fn read_saved(mut source: impl Read) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    source
+        .by_ref()
+        .take(HEADER as u64)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() == HEADER && bytes.starts_with(MARK) {
+        let length = u64::from_le_bytes(array(&bytes[44..52]));
+        if length <= MOST {
+            source.take(length + 1).read_to_end(&mut bytes)?;
+        }
+    }
+    Ok(bytes)
 }
 
 /// SHA-256, hex.
@@ -198,6 +220,21 @@ mod tests {
             Err(error) => error.to_string(),
             Ok(_) => panic!("accepted"),
         }
+    }
+
+    #[test]
+    fn what_does_not_end_is_read_as_far_as_a_state_may_go() {
+        let sealed = seal(&SCENE, &[0xAB; 5000]);
+        assert_eq!(read_saved(&sealed[..]).unwrap(), sealed);
+        let longer = read_saved(std::io::Read::chain(&sealed[..], std::io::repeat(0))).unwrap();
+        assert_eq!(longer.len(), sealed.len() + 1);
+        assert!(refusal(&longer).contains("too long"));
+        let zeros = read_saved(std::io::repeat(0)).unwrap();
+        assert!(refusal(&zeros).contains("do not begin with the mark"));
+        let mut huge = sealed;
+        huge[44..52].copy_from_slice(&u64::MAX.to_le_bytes());
+        let read = read_saved(std::io::Read::chain(&huge[..], std::io::repeat(0)));
+        assert_eq!(read.unwrap().len(), HEADER);
     }
 
     #[test]

@@ -8,8 +8,9 @@ use super::Error;
 /// File name of the shared library.
 pub const FILE_NAME: &str = "libsandgate_fmu.so";
 
-/// What a library without Zenoh says when it shall publish. It stands in its bytes, and not in those of one with Zenoh.
-pub const WITHOUT_ZENOH: &str = "this library was built without Zenoh; pack the FMU with `sandgate fmu --zenoh` (fmu/README.md)";
+/// What a library without Zenoh says when it shall publish, before what to do. It stands in its bytes, and not in those of one
+/// with Zenoh.
+pub const WITHOUT_ZENOH: &str = "this library was built without Zenoh; ";
 
 /// Which of the shared libraries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

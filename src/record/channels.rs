@@ -95,7 +95,7 @@ impl Channels {
             CommandKind::Request => ("in", "request"),
             CommandKind::Reply => ("out", "reply"),
         };
-        let key = keys::control(&self.base, &command.interface, &command.verb);
+        let key = keys::logged_call(&self.base, &command.interface, &command.verb);
         let topic = format!("{key}/{leaf}");
         let first = self.numbers.get(&topic).copied().unwrap_or(0);
         self.commands.entry(topic.clone()).or_insert_with(|| {

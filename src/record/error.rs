@@ -86,6 +86,15 @@ pub enum ReadError {
         /// Why.
         source: std::io::Error,
     },
+    /// It is no file whose end can be looked at first.
+    #[error(
+        "cannot read log {path}: found a folder, pipe or device, allowed a file, which is read from both ends; write what \
+         comes through a pipe to a file first (`cat > run.mcap`) and give that"
+    )]
+    NotAFile {
+        /// What was given.
+        path: PathBuf,
+    },
     /// The file is something else.
     #[error(
         "{path} is not an MCAP file: it does not begin with the magic bytes \\x89MCAP0; give a log that a run, an FMU or a component on the bus wrote, such as run.mcap"

@@ -1,7 +1,7 @@
 //! Proof of a file's account of mass: at every line, initial + inflow - outflow = present, exactly.
 
+use super::ending::Ending;
 use super::error::ReadError;
-use super::raw::Ending;
 use super::read::{Body, Entry, LogReader};
 use crate::component::MassLedger;
 use std::path::Path;

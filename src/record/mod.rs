@@ -10,6 +10,7 @@
 
 mod channels;
 mod compare;
+mod ending;
 mod error;
 mod file;
 mod json;
@@ -30,11 +31,12 @@ mod tests;
 mod topics;
 mod write;
 
+pub use ending::Ending;
 pub use error::{Failure, ReadError, RecordError};
 pub use json::{JsonReader, number};
 pub use mass::{MassCheck, WrongLine, check_mass};
 pub use options::{Finished, RecordOptions};
-pub use raw::{Ending, RawChannel, RawEntry, RawMessage, RawReader, Schema};
+pub use raw::{RawChannel, RawEntry, RawMessage, RawReader, Schema};
 pub use read::{Body, Entry, LogReader};
 pub use recover::{RecoverError, Recovered, recover};
 pub use redrive::{Difference, RedriveError, RedriveOptions, Redriven, redrive};

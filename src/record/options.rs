@@ -24,6 +24,8 @@ pub struct RecordOptions {
     pub sync_every_flush: bool,
     /// Why this file begins: "start", "resumed", "rotated", "reset", "restored".
     pub reason: String,
+    /// Simulated time at which this file begins, if the component is not there yet [s].
+    pub begins: Option<f64>,
     /// Files to carry along, such as modelDescription.xml: name, media type, bytes.
     pub attachments: Vec<(String, String, Vec<u8>)>,
 }
@@ -47,6 +49,7 @@ impl RecordOptions {
             sync_every_flush: scene.log.sync_every_flush,
             particles_every: scene.log.particles_every,
             reason: "start".to_owned(),
+            begins: None,
             attachments: Vec::new(),
         }
     }

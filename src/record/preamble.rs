@@ -17,6 +17,7 @@ pub(super) fn write_preamble(
     place: Option<&Place>,
 ) -> Result<(), RecordError> {
     let scene = component.scene();
+    let begins = options.begins.unwrap_or(component.time());
     let run = [
         ("scene", scene.name.clone()),
         ("title", scene.title.clone()),
@@ -33,10 +34,10 @@ pub(super) fn write_preamble(
         ("epoch", place.map_or(0, |p| p.epoch).to_string()),
         ("number", place.map_or(0, |p| p.number).to_string()),
         ("reason", options.reason.clone()),
-        ("time", component.time().to_string()),
+        ("time", begins.to_string()),
     ];
     file.metadata("segment", owned(begin));
-    let time = nanoseconds(component.time());
+    let time = nanoseconds(begins);
     file.attachment(
         "scene.toml",
         "application/toml",

@@ -4,6 +4,7 @@
 //! A file that was cut short (a killed process, a full disk) reads up to its cut; [`RawReader::ending`] says so
 //! afterwards.
 
+use super::ending::Ending;
 use super::error::ReadError;
 use mcap::McapError;
 use mcap::records::Record;
@@ -80,58 +81,6 @@ pub enum RawEntry {
     Message(RawMessage),
 }
 
-/// How a log ends.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Ending {
-    /// With summary and magic bytes: the writer finished it.
-    #[default]
-    Complete,
-    /// Short of that.
-    Cut {
-        /// Bytes of the file that were used.
-        byte: u64,
-        /// Simulated time of the last message before the cut, if there is one [ns].
-        last: Option<u64>,
-        /// What the reader met there.
-        why: String,
-        /// Whether bytes are wrong, rather than missing.
-        damaged: bool,
-    },
-}
-
-impl std::fmt::Display for Ending {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Ending::Complete => write!(f, "complete"),
-            Ending::Cut {
-                byte,
-                last,
-                why,
-                damaged,
-            } => {
-                match damaged {
-                    true => write!(f, "damaged before byte {byte} ({why})")?,
-                    false => write!(f, "cut short near byte {byte} ({why})")?,
-                }
-                if let Some(last) = last {
-                    write!(f, ", last message at {} s", *last as f64 * 1e-9)?;
-                }
-                if *damaged {
-                    return write!(
-                        f,
-                        ": bytes were changed after they were written; what was read may be wrong or have gaps, \
-                         and nothing behind that byte was read"
-                    );
-                }
-                write!(
-                    f,
-                    ": the writer was stopped or its disk was full; all before the cut was read"
-                )
-            }
-        }
-    }
-}
-
 /// How carefully chunks are checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Check {
@@ -146,6 +95,7 @@ pub(super) enum Check {
 /// Iterates over a log. Ends at the end or at a cut; see [`RawReader::ending`].
 pub struct RawReader {
     path: PathBuf,
+    size: u64,
     source: BufReader<File>,
     reader: LinearReader,
     schemas: HashMap<u16, Arc<Schema>>,
@@ -173,7 +123,13 @@ impl RawReader {
             source,
         };
         let file = File::open(path).map_err(io)?;
-        let size = file.metadata().map_err(io)?.len();
+        let metadata = file.metadata().map_err(io)?;
+        if !metadata.is_file() {
+            return Err(ReadError::NotAFile {
+                path: path.to_owned(),
+            });
+        }
+        let size = metadata.len();
         let mut source = BufReader::with_capacity(1 << 16, file);
         let mut magic = Vec::new();
         let expected = mcap::MAGIC;
@@ -203,6 +159,7 @@ impl RawReader {
             .with_record_length_limit(usize::try_from(size).unwrap_or(usize::MAX));
         Ok(Self {
             path: path.to_owned(),
+            size,
             source,
             reader: LinearReader::new_with_options(options),
             schemas: HashMap::new(),
@@ -248,12 +205,34 @@ impl RawReader {
         });
     }
 
+    /// What comes behind the magic bytes at the end; the reader asks for no byte beyond them.
+    fn end(&mut self) -> Result<Ending, ReadError> {
+        if self.bytes >= self.size {
+            return Ok(Ending::Complete);
+        }
+        let mut next = Vec::new();
+        let expected = mcap::MAGIC;
+        (&mut self.source)
+            .take(expected.len() as u64)
+            .read_to_end(&mut next)
+            .map_err(|source| ReadError::Io {
+                path: self.path.clone(),
+                source,
+            })?;
+        Ok(Ending::Followed {
+            byte: self.bytes,
+            more: self.size - self.bytes,
+            is_log: next == expected,
+            path: self.path.clone(),
+        })
+    }
+
     /// The next entry; None at the end.
     fn advance(&mut self) -> Result<Option<RawEntry>, ReadError> {
         while self.ending.is_none() {
             let record = match self.reader.next_event() {
                 None => {
-                    self.ending = Some(Ending::Complete);
+                    self.ending = Some(self.end()?);
                     break;
                 }
                 Some(Err(McapError::UnsupportedCompression(with))) => {

@@ -1,8 +1,9 @@
 //! Reads a log back and says what its messages mean. A log that was cut short reads up to its cut;
 //! [`LogReader::ending`] says so afterwards.
 
+use super::ending::Ending;
 use super::error::ReadError;
-use super::raw::{Ending, RawEntry, RawMessage, RawReader};
+use super::raw::{RawEntry, RawMessage, RawReader};
 use crate::wire::Described;
 use crate::wire::foxglove::{FrameTransform, Log, PointCloud, SceneUpdate};
 use crate::wire::messages::{Applied, Command, Gauge, StepStats};

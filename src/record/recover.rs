@@ -5,11 +5,12 @@
 //! file just ends, for whole messages in the piece of a chunk that the first left out. After changed bytes nothing is
 //! taken over: what comes behind them cannot be told from noise.
 
+use super::ending::Ending;
 use super::error::{ReadError, RecordError};
 use super::file::{ChannelId, LogFile, Pace};
 use super::place::Place;
 use super::preamble::owned;
-use super::raw::{Check, Ending, RawChannel, RawEntry, RawReader};
+use super::raw::{Check, RawChannel, RawEntry, RawReader};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -54,14 +55,14 @@ pub enum RecoverError {
 /// # Errors
 /// [`RecoverError::Read`] if `from` is no log, [`RecoverError::Write`] if `to` exists or cannot be written.
 pub fn recover(from: &Path, to: &Path) -> Result<Recovered, RecoverError> {
-    let mut source = RawReader::checking(from, Check::Before)?;
+    let source = RawReader::checking(from, Check::Before)?;
     let place = Place {
         // `run.mcap.part` may be what is recovered to `run.mcap`.
         unfinished: ".recovering",
         ..Place::alone(to)
     };
     let sink = Box::new(place.create()?);
-    let mut copy = Copy {
+    let copy = Copy {
         file: LogFile::start(sink, Some(place.part()), Pace::Caller),
         channels: HashMap::new(),
         entries: 0,
@@ -75,22 +76,17 @@ pub fn recover(from: &Path, to: &Path) -> Result<Recovered, RecoverError> {
             path: to.to_owned(),
         },
     };
-    for entry in source.by_ref() {
-        copy.add(&entry?);
-    }
-    let mut ending = source.ending().cloned().unwrap_or(Ending::Complete);
-    if matches!(ending, Ending::Cut { damaged: false, .. }) {
-        let (seen, checked) = (copy.entries, copy.recovered.messages);
-        let mut rest = RawReader::checking(from, Check::Not)?;
-        for entry in rest.by_ref().skip(seen) {
-            copy.add(&entry?);
+    match copy.make(from, source) {
+        Ok(recovered) => {
+            place.rename()?;
+            Ok(recovered)
         }
-        // It came further.
-        ending = rest.ending().cloned().unwrap_or(ending);
-        copy.recovered.unchecked = copy.recovered.messages - checked;
+        Err(error) => {
+            // The same command can be given again.
+            let _ = std::fs::remove_file(place.part());
+            Err(error)
+        }
     }
-    copy.recovered.ending = ending;
-    copy.finish(from, &place)
 }
 
 struct Copy {
@@ -101,6 +97,26 @@ struct Copy {
 }
 
 impl Copy {
+    /// Everything whole of `from`, of which `source` is the first reading, and the end.
+    fn make(mut self, from: &Path, mut source: RawReader) -> Result<Recovered, RecoverError> {
+        for entry in source.by_ref() {
+            self.add(&entry?);
+        }
+        let mut ending = source.ending().cloned().unwrap_or(Ending::Complete);
+        if matches!(ending, Ending::Cut { damaged: false, .. }) {
+            let (seen, checked) = (self.entries, self.recovered.messages);
+            let mut rest = RawReader::checking(from, Check::Not)?;
+            for entry in rest.by_ref().skip(seen) {
+                self.add(&entry?);
+            }
+            // It came further.
+            ending = rest.ending().cloned().unwrap_or(ending);
+            self.recovered.unchecked = self.recovered.messages - checked;
+        }
+        self.recovered.ending = ending;
+        self.finish(from)
+    }
+
     fn add(&mut self, entry: &RawEntry) {
         self.entries += 1;
         match entry {
@@ -140,7 +156,7 @@ impl Copy {
     }
 
     /// Says in the file what was done, and closes it.
-    fn finish(mut self, from: &Path, place: &Place) -> Result<Recovered, RecoverError> {
+    fn finish(mut self, from: &Path) -> Result<Recovered, RecoverError> {
         let done = &self.recovered;
         if done.ending != Ending::Complete {
             let name = from.file_name().unwrap_or_default().to_string_lossy();
@@ -153,15 +169,8 @@ impl Copy {
             self.file.metadata("recovered", note);
         }
         match self.file.finish().1 {
-            Some(failure) => {
-                // The same command can be given again.
-                let _ = std::fs::remove_file(place.part());
-                Err(RecoverError::Unfinished(failure.cause))
-            }
-            None => {
-                place.rename()?;
-                Ok(self.recovered)
-            }
+            Some(failure) => Err(RecoverError::Unfinished(failure.cause)),
+            None => Ok(self.recovered),
         }
     }
 }

@@ -11,7 +11,8 @@ mod start;
 
 use super::Recorder;
 use super::compare::{differ, different_figure, different_particle, same};
-use super::raw::{Ending, RawEntry, RawMessage, RawReader};
+use super::ending::Ending;
+use super::raw::{RawEntry, RawMessage, RawReader};
 use super::read::{Body, decode};
 use crate::component::{Component, Mode, StepReport};
 use crate::wire::convert::{self, Output};

@@ -1,7 +1,8 @@
 //! What is in a log: one reading from start to end.
 
+use super::ending::Ending;
 use super::error::ReadError;
-use super::raw::{Ending, RawEntry, RawMessage, RawReader};
+use super::raw::{RawEntry, RawMessage, RawReader};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

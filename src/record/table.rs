@@ -1,8 +1,9 @@
 //! The scalars of a log side by side: one row a communication point, the columns of the run's `gauges.csv`. Rows of
 //! steps that were taken back are left out.
 
+use super::ending::Ending;
 use super::error::ReadError;
-use super::raw::{Ending, RawEntry, RawReader};
+use super::raw::{RawEntry, RawReader};
 use super::read::{Body, decode};
 use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
 use crate::scene;
@@ -114,6 +115,8 @@ struct Builder {
     table: Table,
     /// Columns of a variable: one, or one each element.
     places: HashMap<String, Vec<usize>>,
+    /// Of each column.
+    ranges: Vec<Option<(f64, f64)>>,
     /// The row being filled.
     row: Vec<f64>,
     /// As it was when states were saved, by their checksums.
@@ -125,7 +128,7 @@ impl Builder {
     fn new(scene: scene::Scene, span: (f64, f64)) -> Self {
         let variables = VariableTable::of(&scene);
         let mut places: HashMap<String, Vec<usize>> = HashMap::new();
-        let (mut columns, mut row) = (Vec::new(), Vec::new());
+        let (mut columns, mut row, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
         let scalars = variables
             .rows()
             .iter()
@@ -144,6 +147,7 @@ impl Builder {
                 Start::Exact(values) => values.first().copied(),
                 Start::Empty | Start::Calculated => None,
             });
+            ranges.push(variable.range);
             columns.push(Column {
                 name: variable.name.clone(),
                 unit: variable.unit.to_owned(),
@@ -161,6 +165,7 @@ impl Builder {
                 ..Table::default()
             },
             places,
+            ranges,
             saved: HashMap::new(),
             row: row.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect(),
             span,
@@ -242,7 +247,13 @@ impl Builder {
     fn put(&mut self, name: &str, values: &[f64]) {
         let places = self.places.get(name).map_or(&[][..], Vec::as_slice);
         for (&place, &value) in places.iter().zip(values) {
-            self.row[place] = value;
+            // The log has what was asked for. What was taken and lies out of the range was clamped.
+            self.row[place] = match self.ranges[place] {
+                Some((least, most)) if self.table.columns[place].is_input => {
+                    value.clamp(least, most)
+                }
+                _ => value,
+            };
         }
     }
 }

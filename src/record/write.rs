@@ -121,6 +121,7 @@ impl Recorder {
         };
         let mut file = LogFile::start(sink, place.as_ref().map(Place::part), writing);
         write_preamble(&mut file, component, &options, place.as_ref())?;
+        let begins = options.begins.unwrap_or(component.time());
         let channels = Channels::add(&mut file, component, &base, numbers.unwrap_or_default());
         let mut recorder = Self {
             file,
@@ -130,8 +131,8 @@ impl Recorder {
             pending: Pending::default(),
             saved: HashSet::new(),
             restored: 0,
-            first_time: component.time(),
-            began: component.time(),
+            first_time: begins,
+            began: begins,
             snapshots: 0,
             trouble: None,
             earlier: Earlier::default(),
@@ -139,16 +140,14 @@ impl Recorder {
             last: Last::default(),
         };
         recorder.remember(component);
+        recorder.last.time = begins;
         // Before initialisation parameters may still move walls: who runs the log again has the scene's own then.
         let started = has_state(component);
         let scene = match started {
             true => component.scene(),
             false => component.base_scene(),
         };
-        recorder.scene(
-            &picture::scene_update(scene, component.time()),
-            component.time(),
-        );
+        recorder.scene(&picture::scene_update(scene, begins), begins);
         if started {
             recorder.applied(
                 component,

@@ -78,10 +78,38 @@ pub fn frames(base: &str) -> String {
     format!("{base}/out/frames")
 }
 
-/// Key of a request, as sent on Zenoh (`interface` "rpc") or logged (any interface, with `/request` or `/reply`).
+/// Key of a request: of calls over Zenoh (`interface` "rpc") and, in logs, of those of other interfaces.
 #[must_use]
 pub fn control(base: &str, interface: &str, verb: &str) -> String {
     format!("{base}/@{interface}/{verb}")
+}
+
+/// What may be asked over the bus. Calls of other names share one topic of a log: whoever can ask must not be able to give
+/// it topics without end.
+pub const VERBS: [&str; 12] = [
+    "describe",
+    "status",
+    "get",
+    "set",
+    "step",
+    "run",
+    "pause",
+    "reset",
+    "save",
+    "restore",
+    "log",
+    "terminate",
+];
+
+/// Topic of a call in logs, to which `/request` or `/reply` is added: its key, that of all verbs that there are not, or that of
+/// all set-points (`interface` "in").
+#[must_use]
+pub fn logged_call(base: &str, interface: &str, verb: &str) -> String {
+    match interface {
+        "rpc" if !VERBS.contains(&verb) => control(base, interface, "unknown"),
+        "in" => control(base, interface, "set-point"),
+        _ => control(base, interface, verb),
+    }
 }
 
 #[cfg(test)]
@@ -104,6 +132,16 @@ mod tests {
             control(&base, "rpc", "step"),
             "sandgate/v1/silo_gate/@rpc/step"
         );
+        for (interface, verb, topic) in [
+            ("rpc", "step", "@rpc/step"),
+            ("rpc", "stepp", "@rpc/unknown"),
+            ("rpc", "step/now", "@rpc/unknown"),
+            ("in", "gate.main.opening", "@in/set-point"),
+            ("c", "sandgate_step", "@c/sandgate_step"),
+        ] {
+            let topic = format!("sandgate/v1/silo_gate/{topic}");
+            assert_eq!(logged_call(&base, interface, verb), topic);
+        }
     }
 
     #[test]

@@ -148,10 +148,10 @@ messages! {
         /// Request or reply.
         #[prost(enumeration(CommandKind), tag = "3")]
         pub kind: i32,
-        /// Who was asked: "rpc", "fmi2", "fmi3", "c" or "cli".
+        /// Who was asked: "rpc", "fmi2", "fmi3", "c" or "cli"; "in" for set-points.
         #[prost(string, tag = "4")]
         pub interface: String,
-        /// What is asked: `step`, `fmi3DoStep`, `sandgate_step`.
+        /// What is asked: `step`, `fmi3DoStep`, `sandgate_step`; a set-point's variable.
         #[prost(string, tag = "5")]
         pub verb: String,
         /// The caller's identifier of the request, the same in the reply.
@@ -163,7 +163,7 @@ messages! {
         /// Request or reply as JSON text, as it came or went.
         #[prost(string, tag = "8")]
         pub body: String,
-        /// Replies: "ok" or the error's code; empty in requests.
+        /// Replies and set-points: "ok" or the error's code; empty in requests.
         #[prost(string, tag = "9")]
         pub status: String,
     } with {

@@ -370,6 +370,13 @@ fn states_that_do_not_fit_are_refused() {
         5,
         &["nowhere.state"],
     );
+    // It does not end.
+    let endless = &["run", &silo, "--resume", "/dev/zero"];
+    desk.refused(
+        endless,
+        5,
+        &["saved state refused", "the mark of a saved state"],
+    );
     let mut flipped = good.clone();
     let middle = flipped.len() / 2;
     flipped[middle] ^= 4;

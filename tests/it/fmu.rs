@@ -190,12 +190,16 @@ fn fmus_publish_on_zenoh_and_take_set_points() {
     let plain = packed(&path, FmiVersion::V3, &folder);
     let size = fs::metadata(&plain).expect("it was just written").len();
     assert!(size < 4_000_000, "{size} bytes");
-    let environment: [(&str, &OsStr); 6] = [
+    let environment: [(&str, &OsStr); 7] = [
         ("SANDGATE_SCENE", path.as_ref()),
         ("SANDGATE_LIBRARY", library.as_ref()),
         ("SANDGATE_FMU2", fmus[0].as_ref()),
         ("SANDGATE_FMU3", fmus[1].as_ref()),
         ("SANDGATE_PLAIN", plain.as_ref()),
+        (
+            "SANDGATE_PLAIN_LIBRARY",
+            crate::shared_library::library().as_ref(),
+        ),
         ("SANDGATE_PROGRAM", env!("CARGO_BIN_EXE_sandgate").as_ref()),
     ];
     pytest("test_fmu_zenoh.py", &environment);

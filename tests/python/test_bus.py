@@ -323,6 +323,9 @@ def test_who_comes_late_gets_the_last_values(session, silo):
     assert len(list(session.get(f"{BASE}/out/scene"))) == 1
     [(is_error, reply)] = raw(session, f"{BASE}/out/nothing")
     assert is_error and "nothing was published" in reply["message"]
+    for part in ("level.validity", "surface.depth[1]"):
+        [(is_error, reply)] = raw(session, f"{BASE}/out/gauge/{part}")
+        assert is_error and "stand in the message of their output" in reply["message"], part
 
 
 def test_particles_are_made_only_for_somebody():
@@ -624,6 +627,109 @@ def test_all_traffic_is_logged(tmp_path):
     assert seen[f"{BASE}/@rpc/status/reply"]
     inputs = [(a.step, [(i.values[0], i.source) for i in a.inputs]) for a in seen[f"{BASE}/out/applied"] if a.step]
     assert inputs == [(1, [(0.5, "pytest")]), (2, [(0.25, "set-point")])]
+
+
+def logged(path):
+    """Messages of a log by topic, also of one that was cut."""
+    from mcap_protobuf.decoder import DecoderFactory
+    from mcap.reader import make_reader
+
+    if path.suffix == ".part":
+        whole = path.with_suffix(".whole")
+        subprocess.run([os.environ["SANDGATE"], "log", "recover", path, whole], check=True, capture_output=True)
+        path = whole
+    seen = {}
+    with path.open("rb") as file:
+        for _, channel, _, message in make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+            seen.setdefault(channel.topic.removeprefix(f"{BASE}/"), []).append(message)
+    return seen
+
+
+def test_who_asks_for_what_there_is_not_opens_no_topics(tmp_path):
+    path = tmp_path / "served.mcap"
+    with served("--log", str(path)) as (server, session, silo):
+        silo.ask("step")
+        for n in range(50):
+            [(_, reply)] = raw(session, f"{BASE}/@rpc/verb{n}", json.dumps({"req": str(n), "client": f"c{n}"}))
+            assert reply["code"] == "bad_request"
+            session.put(f"{BASE}/in/no.variable{n}", json.dumps({"value": 1, "client": f"c{n}"}))
+        raw(session, f"{BASE}/@rpc/{'v' * 30_000}", "{}")
+        until(lambda: silo.ask("status")["refused_set_points"] == 50)
+        server.end()
+    seen = logged(path)
+    assert {topic for topic in seen if topic.startswith("@")} == {
+        *(f"@rpc/{verb}/{half}" for verb in ("step", "status", "unknown") for half in ("request", "reply")),
+        "@in/set-point/request",
+    }
+    asked = seen["@rpc/unknown/request"]
+    assert [(a.verb, a.request, a.client) for a in asked[:50]] == [(f"verb{n}", str(n), f"c{n}") for n in range(50)]
+    assert asked[50].verb == "v" * 64 + "..."
+    points = seen["@in/set-point/request"]
+    assert [(p.verb, p.client, p.status) for p in points] == [(f"no.variable{n}", f"c{n}", "unknown_variable") for n in range(50)]
+    assert all(json.loads(p.body)["value"] == 1 for p in points)
+
+
+def test_what_was_answered_or_taken_is_in_the_log_of_a_killed_program(tmp_path):
+    path = tmp_path / "served.mcap"
+    with served("--log", str(path)) as (server, session, silo):
+        session.put(f"{BASE}/in/{GATE}", json.dumps({"value": 0.25, "client": "plc"}))
+        until(lambda: silo.ask("get", outputs=[GATE])["outputs"][GATE] == 0.25)
+        silo.ask("log", message="before the long step")
+        body = json.dumps({"req": "long", "dt_ns": 3_600_000_000_000})
+        step = threading.Thread(target=lambda: raw(session, f"{BASE}/@rpc/step", body, timeout=5.0))
+        step.start()
+        until(lambda: silo.ask("status")["busy"])
+        body = json.dumps({"req": "meanwhile", "client": "watcher"})
+        assert raw(session, f"{BASE}/@rpc/status", body)[0][1]["ok"]
+        time.sleep(1.5)
+        server.process.kill()
+        step.join()
+    seen = logged(path.with_suffix(".mcap.part"))
+    [point] = seen["@in/set-point/request"]
+    assert (point.verb, point.client, point.status) == (GATE, "plc", "ok")
+    assert "meanwhile" in [a.request for a in seen["@rpc/status/request"]]
+    assert len(seen["@rpc/status/request"]) == len(seen["@rpc/status/reply"])
+
+
+def test_what_still_waits_as_the_program_ends_is_in_the_log(tmp_path):
+    path = tmp_path / "served.mcap"
+    with served("--log", str(path)) as (server, session, silo):
+        answers = queue.Queue()
+
+        def ask(n):
+            body = json.dumps({"req": str(n), "dt_ns": 300_000_000})
+            answers.put(raw(session, f"{BASE}/@rpc/step", body, timeout=60))
+
+        threads = [threading.Thread(target=ask, args=[n]) for n in range(4)]
+        for thread in threads:
+            thread.start()
+        until(lambda: silo.ask("status")["busy"])
+        server.process.send_signal(signal.SIGINT)
+        for thread in threads:
+            thread.join()
+        server.process.wait(timeout=60)
+    replies = sorted((r["req"], r.get("code", "ok")) for [(_, r)] in (answers.get() for _ in threads))
+    assert "state" in [code for _, code in replies]
+    assert sorted((r.request, r.status) for r in logged(path)["@rpc/step/reply"]) == replies
+
+
+def test_the_last_point_is_published_however_fast_steps_come(tmp_path):
+    """Steps of a sleeping scene are faster than their publication; who watches has the last one when they pause."""
+    with served() as (server, session, silo):
+        classes = silo.message_classes()
+        last = {}
+
+        def keep(sample):
+            message = classes["sandgate.StepStats"].FromString(sample.payload.to_bytes())
+            last["step"] = message.step
+
+        subscriber = session.declare_subscriber(f"{BASE}/out/stats", keep)
+        silo.ask("run")
+        time.sleep(3)
+        silo.ask("pause")
+        step = silo.ask("status")["step"]
+        until(lambda: last.get("step") == step)
+        subscriber.undeclare()
 
 
 def test_the_example_runs():

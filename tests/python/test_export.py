@@ -119,3 +119,7 @@ def test_a_log_that_somebody_compressed_is_refused_with_what_to_do(method, tmp_p
     for verb in (["log", "info"], ["log", "cat"], ["log", "redrive", "--check"], ["log", "export", "--csv", tmp_path / "g.csv"]):
         done = subprocess.run([os.environ["SANDGATE_PROGRAM"], *verb, path], capture_output=True, text=True)
         assert done.returncode == 5 and "mcap decompress" in done.stderr, (verb, done.stdout, done.stderr)
+    for _ in range(2):  # The first one leaves nothing that would be in the way of the second.
+        done = subprocess.run([os.environ["SANDGATE_PROGRAM"], "log", "recover", path, tmp_path / "to.mcap"], capture_output=True, text=True)
+        assert done.returncode != 0 and "mcap decompress" in done.stderr, done.stderr
+        assert os.listdir(tmp_path) == ["small.mcap"]

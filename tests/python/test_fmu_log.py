@@ -400,5 +400,83 @@ def test_the_c_library_logs_alike(tmp_path):
     library.free()
 
 
+def c_log(path):
+    """The C library with a log that shall be at `path`, before it is initialised."""
+    library = Library(LIBRARY, PATH)
+    reference = ctypes.c_uint32(library.references["log.path"])
+    library.check(library.lib.sandgate_set_text(library.handle, reference, str(path).encode()))
+    return library
+
+
+def test_a_log_begins_where_the_run_does(tmp_path):
+    begun = {}
+    for way in ("in one", "in two"):
+        library = c_log(tmp_path / f"{way}.mcap")
+        lib, handle, start = library.lib, library.handle, ctypes.c_double(2.5)
+        end = ctypes.c_double(float("inf"))
+        if way == "in one":
+            library.check(lib.sandgate_initialize(handle, start, end))
+        else:
+            library.check(lib.sandgate_enter_initialization(handle, start, end))
+            library.check(lib.sandgate_exit_initialization(handle))
+        library.step(2.5, H)
+        library.free()
+        said = json.loads(sandgate("log", "info", "--json", tmp_path / f"{way}.mcap"))
+        assert said["metadata"]["segment"]["time"] == "2.5"
+        assert said["first_ns"] == 2_500_000_000
+        begun[way] = [(c["topic"], c["first_ns"]) for c in said["channels"] if "/@c/" not in c["topic"]]
+        assert "same bits" in runs_again(tmp_path / f"{way}.mcap")
+    assert begun["in one"] == begun["in two"]
+
+
+def test_calls_that_change_something_or_are_refused_are_in_the_log_with_what_they_asked(tmp_path):
+    path = tmp_path / "run.mcap"
+    library = c_log(path)
+    lib, handle = library.lib, library.handle
+    library.initialize()
+    library.check(lib.sandgate_set_threads(handle, 2))
+    opening = library.references["gate.sluice.opening"]
+    one, found = ctypes.c_size_t(1), ctypes.c_double()
+    unknown = ctypes.c_uint32(9999)
+    for refused in [
+        lib.sandgate_set_threads(handle, 300),
+        lib.sandgate_variable_by_name(handle, b"nope", ctypes.byref(unknown)),
+        lib.sandgate_set_text(handle, ctypes.c_uint32(opening), b"x"),
+        lib.sandgate_get(handle, ctypes.byref(unknown), one, ctypes.byref(found), one),
+        lib.sandgate_initialize(handle, ctypes.c_double(1.0), ctypes.c_double(2.0)),
+    ]:
+        assert refused != 0
+    library.get(["gate.sluice.opening"])
+    library.free()
+    asked = [(v.verb.removeprefix("sandgate_"), json.loads(v.body)) for topic, v in messages(path) if topic.endswith("/request")]
+    assert asked[1:] == [
+        ("set_threads", {"threads": 2}),
+        ("set_threads", {"threads": 300}),
+        ("variable_by_name", {"name": "nope"}),
+        ("set_text", {"gate.sluice.opening": "x"}),
+        ("get", {"variables": ["unknown reference 9999"], "count": 1}),
+        ("initialize", {"start": 1.0, "stop": 2.0}),
+    ]
+
+
+def test_tables_have_the_values_that_inputs_had(tmp_path):
+    path, table = tmp_path / "run.mcap", tmp_path / "run.csv"
+    library = c_log(path)
+    library.initialize()
+    library.set("saturate_inputs", 1.0)
+    library.set("gate.sluice.opening", 5.0)
+    assert library.get(["gate.sluice.opening"]) == [1.0]
+    library.step(0.0, H)
+    library.free()
+    sandgate("log", "export", path, "--csv", table)
+    with open(table) as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["gate.sluice.opening"]) for row in rows][1:] == [1.0]
+    # As asked for it is in the log.
+    applied = [v for topic, v in messages(path) if topic == "out/applied"]
+    assert [i.values[0] for a in applied for i in a.inputs if i.name == "gate.sluice.opening"][-1] == 5.0
+    runs_again(path)
+
+
 if __name__ == "__main__" and sys.argv[1:2] == ["full"]:
     full_disk(*sys.argv[2:])

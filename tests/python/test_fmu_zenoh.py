@@ -4,6 +4,7 @@ Run by tests/it/fmu.rs, which packs the FMUs with the library that has Zenoh.
 
 SANDGATE_PROGRAM  the program
 SANDGATE_PLAIN    the FMU without Zenoh
+SANDGATE_PLAIN_LIBRARY  the library without Zenoh
 """
 
 import ctypes
@@ -198,10 +199,12 @@ def test_bad_configurations_are_refused_and_can_be_corrected(version, tmp_path):
     cases = {
         "{listen: 7}": "Zenoh configuration",
         str(unreachable): "none.json5",
-        "{%s}" % open_one: "can be reached from other machines",
+        "/dev/zero": "found a folder, device or pipe",
+        "{%s}" % open_one: "add metadata: {sandgate: {allow_open_listener: true}}",
+        "{metadata: {sandgate: 7}}": "found 7, allowed an object",
         "{metadata: {sandgate: {instance: 'A b'}}}": "a-z 0-9",
         "{metadata: {sandgate: {open: true}}}": "allow_open_listener",
-        "{listen: {endpoints: ['%s']}}" % taken.endpoint: "port in use",
+        "{listen: {endpoints: ['%s']}}" % taken.endpoint: "port in use? choose another by listen:",
     }
     fmu.fmu.enterInitializationMode()
     for config, why in cases.items():
@@ -217,6 +220,28 @@ def test_bad_configurations_are_refused_and_can_be_corrected(version, tmp_path):
     assert any(re.search("sandgate/v1/silo-7, listening on tcp/0.0.0.0:[1-9]", m) for _, _, m in fmu.messages)
     fmu.free()
     taken.__exit__()
+
+
+@both
+def test_its_log_has_what_was_asked_to_the_last(version, tmp_path):
+    path = tmp_path / "run.mcap"
+    with Published(version, log__path=str(path)) as it:
+        it.fmu.step(0.0, H)
+        it.client.ask("get", outputs=[GATE])
+        it.point(GATE, 0.25)
+        for n in range(3):
+            [reply] = it.session.get(f"{it.client.base}/@rpc/verb{n}", payload="{}")
+            assert json.loads(reply.ok.payload.to_string())["code"] == "bad_request"
+    said = subprocess.run([PROGRAM, "log", "cat", "--json", path], capture_output=True, text=True, check=True).stdout
+    asked = {}
+    for line in map(json.loads, said.splitlines()):
+        if line["topic"].startswith(f"{BASE}/@rpc/") or "/@in/" in line["topic"]:
+            asked.setdefault(line["topic"].removeprefix(f"{BASE}/"), []).append(line["value"])
+    assert [a["verb"] for a in asked["@rpc/unknown/request"]] == ["verb0", "verb1", "verb2"]
+    assert len(asked["@rpc/get/request"]) == len(asked["@rpc/get/reply"]) == 1
+    # No step followed that could have used it.
+    [point] = asked["@in/set-point/request"]
+    assert (point["verb"], point["client"], point["status"]) == (GATE, "plc", "state")
 
 
 def open_things():
@@ -273,5 +298,10 @@ def test_an_fmu_without_zenoh_says_how_to_get_it():
     with pytest.raises(FMICallException):
         fmu.set("zenoh.config", "{}")
     assert "sandgate fmu --zenoh" in fmu.messages[-1][2]
+    library = Library(os.environ["SANDGATE_PLAIN_LIBRARY"], PATH)
+    reference = ctypes.c_uint32(library.references["zenoh.config"])
+    assert library.lib.sandgate_set_text(library.handle, reference, b"{}") == 3
+    assert b"link -lsandgate_fmu_zenoh" in library.lib.sandgate_last_error(library.handle)
+    library.free()
     fmu.set("zenoh.config", "")
     fmu.free()

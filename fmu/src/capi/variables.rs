@@ -6,6 +6,7 @@ use sandgate::component::{Causality, Start, ValueKind, Variability, Variable};
 
 use super::code;
 use crate::access::{Values, get_texts};
+use crate::asked::Asked;
 use crate::fault::Fault;
 use crate::guard::{CVariable, Handle, In, Need, Out, Text};
 use crate::instance::Instance;
@@ -97,9 +98,12 @@ pub(crate) extern "C" fn sandgate_variable_by_name(
         let name = name.get("name")?;
         match i.component.variables().by_name(name) {
             Some(row) => reference.write(&[row.reference], "reference"),
-            None => Err(Fault::border(format!(
-                "no variable is called {name}; ask sandgate_variable_info for the names"
-            ))),
+            None => {
+                i.refuses(&Asked::Name(name));
+                Err(Fault::border(format!(
+                    "no variable is called {name}; ask sandgate_variable_info for the names"
+                )))
+            }
         }
     }))
 }
@@ -129,12 +133,23 @@ pub(crate) extern "C" fn sandgate_get(
 ) -> i32 {
     code(instance.call("sandgate_get", Need::Sound, |i| {
         let references = references.slice(reference_count, "references")?;
-        values.check(value_count, "values")?;
-        i.table().check_length("get", references, value_count)?;
-        let mut found = vec![0.0; value_count];
-        i.get(references, &mut found)?;
-        values.write(&found, "values")
+        let done = read(i, references, &mut values, value_count);
+        done.inspect_err(|_| i.refused(references))
     }))
+}
+
+fn read(
+    instance: &mut Instance,
+    references: &[u32],
+    values: &mut Out<f64>,
+    count: usize,
+) -> Result<(), Fault> {
+    values.check(count, "values")?;
+    let table = instance.table();
+    table.check_length("get", references, count)?;
+    let mut found = vec![0.0; count];
+    instance.get(references, &mut found)?;
+    values.write(&found, "values")
 }
 
 #[unsafe(no_mangle)]

@@ -1,8 +1,9 @@
 //! What an instance goes through: initialisation, steps, reset, its end; each with what its log is told.
 
-use sandgate::component::{Component, Error, Intermediate, Mode, StepReport};
+use sandgate::component::{Component, Error, Intermediate, Mode, StepReport, Wish};
 
 use super::{Experiment, Instance};
+use crate::asked::Asked;
 use crate::fault::{Fault, Status};
 use crate::guard::Door;
 use crate::journal::Journal;
@@ -11,23 +12,30 @@ use crate::log::Category;
 impl Instance {
     /// Leaves initialisation: the first gauges are there.
     pub(crate) fn exit_initialization(&mut self) -> Result<(), Fault> {
-        self.leave_initialization(Mode::Initialization, Component::exit_initialization)
+        let start = self.component.time();
+        self.leave_initialization(
+            (Mode::Initialization, start),
+            Component::exit_initialization,
+        )
     }
 
     /// Enters and leaves initialisation in one.
     pub(crate) fn initialize(&mut self, start: f64, stop: Option<f64>) -> Result<(), Fault> {
-        self.leave_initialization(Mode::Instantiated, |c| c.initialize(start, stop))
+        let leave = |c: &mut Component| c.initialize(start, stop);
+        let left = self.leave_initialization((Mode::Instantiated, start), leave);
+        left.inspect_err(|_| self.refuses(&Asked::Times(start, stop)))
     }
 
-    /// The log is opened before, so that a path that cannot be written is refused and nothing has happened.
+    /// The log is opened before, so that a path that cannot be written is refused and nothing has happened. `start` is where
+    /// the component is going to be then [s].
     fn leave_initialization(
         &mut self,
-        from: Mode,
+        (from, start): (Mode, f64),
         leave: impl FnOnce(&mut Component) -> Result<(), Error>,
     ) -> Result<(), Fault> {
         let opened = self.component.mode() == from && {
             self.component.settle()?;
-            self.journal.open(&self.component)?
+            self.journal.open(&self.component, start)?
         };
         let left = leave(&mut self.component);
         if opened && left.is_err() {
@@ -35,7 +43,7 @@ impl Instance {
         }
         left?;
         if opened {
-            self.journal.asks(&self.component);
+            self.journal.asks(&self.component, &Asked::Nothing);
             self.journal.initialized(&self.component)?;
         }
         self.event(|| format!("initialised at t = {} s", self.component.time()));
@@ -44,7 +52,15 @@ impl Instance {
 
     /// One communication step.
     pub(crate) fn step(&mut self, t: f64, h: f64) -> Result<StepReport, Fault> {
-        self.step_with(t, h, |component, _, t, h| component.do_step(t, h))
+        self.step_with(t, h, |component, journal, t, h| {
+            if !journal.listens() {
+                return component.do_step(t, h);
+            }
+            component.do_step_watched(t, h, &mut |_| {
+                journal.during_step();
+                Wish::GoOn
+            })
+        })
     }
 
     /// One communication step with the importer's intermediate updates, if it wants any.
@@ -59,8 +75,10 @@ impl Instance {
         };
         let log = self.log.clone();
         self.step_with(t, h, |component, journal, t, h| {
-            let mut tell =
-                |moment: &mut Intermediate<'_>| updates.tell(moment, &log, journal, door);
+            let mut tell = |moment: &mut Intermediate<'_>| {
+                journal.during_step();
+                updates.tell(moment, &log, journal, door)
+            };
             component.do_step_watched(t, h, &mut tell)
         })
     }
@@ -95,7 +113,7 @@ impl Instance {
 
     /// Back to start values. After a breakdown nothing of the old component is used again.
     pub(crate) fn reset(&mut self) -> Result<(), Fault> {
-        self.journal.asks(&self.component);
+        self.journal.asks(&self.component, &Asked::Nothing);
         if self.broken.is_some() {
             self.component = self.component.anew()?;
             self.broken = None;
@@ -112,7 +130,7 @@ impl Instance {
 
     /// Stepping -> terminated, with the end of the log.
     pub(crate) fn terminate(&mut self) -> Result<(), Fault> {
-        self.journal.asks(&self.component);
+        self.journal.asks(&self.component, &Asked::Nothing);
         self.component.terminate()?;
         self.journal.reply(&self.component, Ok(()));
         self.journal.finish(&self.component, "terminated")

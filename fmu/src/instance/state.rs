@@ -1,6 +1,7 @@
 //! States of an instance: taken, gone back to, checked.
 
 use super::{Experiment, Instance};
+use crate::asked::Asked;
 use crate::fault::Fault;
 use crate::guard::SavedState;
 
@@ -15,7 +16,7 @@ impl Instance {
         &mut self,
         fits: impl FnOnce(usize) -> Result<(), Fault>,
     ) -> Result<SavedState, Fault> {
-        self.journal.asks(&self.component);
+        self.journal.asks(&self.component, &Asked::Nothing);
         let bytes = self.component.save()?;
         fits(bytes.len())?;
         self.journal.saved(&self.component, &bytes)?;
@@ -31,7 +32,7 @@ impl Instance {
         bytes: &[u8],
         experiment: Option<Experiment>,
     ) -> Result<(), Fault> {
-        self.journal.asks(&self.component);
+        self.journal.asks(&self.component, &Asked::Nothing);
         if self.broken.is_some() {
             self.component.restore_anew(bytes)?;
             self.broken = None;

@@ -8,7 +8,11 @@ use sandgate::wire::{Observer, convert};
 use serde_json::{Map, Value, json};
 
 use super::Journal;
+use crate::asked::Asked;
 use crate::fault::Fault;
+
+/// Variables whose names stand in a request; a refused call may name any number of them.
+const MOST_TOLD: usize = 64;
 
 impl Journal {
     /// A call begins.
@@ -29,9 +33,16 @@ impl Journal {
         });
     }
 
-    /// It asks for what its name says.
-    pub(crate) fn asks(&mut self, component: &Component) {
-        self.request(component, || json!({}));
+    /// It asks for what its name and these arguments say.
+    pub(crate) fn asks(&mut self, component: &Component, asked: &Asked<'_>) {
+        self.request(component, || arguments(component.variables(), asked));
+    }
+
+    /// It is going to be refused. Calls that only read have told nothing so far.
+    pub(crate) fn refuses(&mut self, component: &Component, asked: &Asked<'_>) {
+        if !self.told {
+            self.asks(component, asked);
+        }
     }
 
     fn request(&mut self, component: &Component, body: impl FnOnce() -> Value) {
@@ -93,13 +104,41 @@ impl Journal {
     }
 }
 
+/// Arguments by name, for requests.
+fn arguments(table: &VariableTable, asked: &Asked<'_>) -> Value {
+    let name = |reference: &u32| match table.by_reference(*reference) {
+        Some(row) => row.name.clone(),
+        None => unknown(*reference),
+    };
+    match asked {
+        Asked::Nothing => json!({}),
+        Asked::Variables(references) => {
+            let told = references.iter().take(MOST_TOLD).map(name);
+            json!({"variables": told.collect::<Vec<_>>(), "count": references.len()})
+        }
+        Asked::Texts(references, texts) => {
+            let pairs = references.iter().zip(*texts).take(MOST_TOLD);
+            pairs.map(|(r, text)| (name(r), json!(text))).collect()
+        }
+        Asked::Name(name) => json!({"name": name}),
+        Asked::Threads(threads) => json!({"threads": threads}),
+        Asked::Times(start, stop) => {
+            json!({"start": number(*start), "stop": stop.map_or(Value::Null, number)})
+        }
+    }
+}
+
+fn unknown(reference: u32) -> String {
+    format!("unknown reference {reference}")
+}
+
 /// Values by name, for requests.
 fn named(table: &VariableTable, references: &[u32], values: &[f64]) -> Value {
     let mut rest = values;
     let mut map = Map::new();
     for reference in references {
         let Some(row) = table.by_reference(*reference) else {
-            map.insert(format!("unknown reference {reference}"), Value::Null);
+            map.insert(unknown(*reference), Value::Null);
             break;
         };
         let (own, others) = rest.split_at(row.len().min(rest.len()));

@@ -3,15 +3,17 @@
 use sandgate::component::{Causality, Component, HostSettings, Start, ValueKind};
 use sandgate::fmi;
 use sandgate::record::{RecordOptions, Recorder};
+use sandgate::wire::Unobserved;
 use sandgate::wire::messages::AppliedEvent;
 
 use super::network::Network;
-use super::{Journal, told};
+use super::{Journal, listener, told};
 use crate::fault::Fault;
 
 impl Journal {
-    /// Initialisation is about to end: begins the log and opens the network, if there shall be any. Gives whether it did.
-    pub(crate) fn open(&mut self, component: &Component) -> Result<bool, Fault> {
+    /// Initialisation is about to end, at `start` [s]: begins the log and opens the network, if there shall be any. Gives
+    /// whether it did.
+    pub(crate) fn open(&mut self, component: &Component, start: f64) -> Result<bool, Fault> {
         let HostSettings {
             log_path,
             zenoh_config,
@@ -25,7 +27,7 @@ impl Journal {
             self.connect(component)?;
         }
         if logs {
-            match self.create(component, "start") {
+            match self.create(component, ("start", start)) {
                 Ok(log) => self.log = Some(log),
                 Err(fault) => {
                     self.discard();
@@ -70,7 +72,11 @@ impl Journal {
         Ok(())
     }
 
-    fn create(&mut self, component: &Component, reason: &str) -> Result<Recorder, Fault> {
+    fn create(
+        &mut self,
+        component: &Component,
+        (reason, start): (&str, f64),
+    ) -> Result<Recorder, Fault> {
         let settings = component.host_settings();
         // Importers change the directory as they like; the file stays where it is meant now.
         let path = std::path::absolute(&settings.log_path)
@@ -78,6 +84,7 @@ impl Journal {
         let mut options = RecordOptions {
             required: settings.log_required,
             reason: reason.to_owned(),
+            begins: Some(start),
             ..RecordOptions::of(component)
         };
         if !self.instance.is_empty() {
@@ -115,7 +122,7 @@ impl Journal {
     fn disconnect(&mut self) {
         self.owned.clear();
         if let Some(network) = self.network.take()
-            && let Err(why) = network.close()
+            && let Err(why) = network.close(listener(&mut self.log, &mut Unobserved))
         {
             self.complaint = Some(why);
         }
@@ -133,19 +140,20 @@ impl Journal {
             }
         }
         if self.log.is_none() && !settings.log_path.is_empty() {
-            self.log = Some(self.create(component, "restored")?);
+            self.log = Some(self.create(component, ("restored", component.time()))?);
         }
         Ok(())
     }
 
     /// The component was reset, or is no longer what it was: nothing more is told.
     pub(crate) fn end(&mut self, reason: &str) {
+        // First, so that the log has what was asked to the last.
+        self.disconnect();
         if let Some(log) = self.take()
             && let Err(error) = log.end(reason)
         {
             self.complaint = Some(error.to_string());
         }
-        self.disconnect();
     }
 
     /// The log, and remembers how often its component has jumped.

@@ -49,7 +49,12 @@ impl Network {
         self.0.tell_trouble(trouble);
     }
 
-    pub(super) fn close(self) -> Result<(), String> {
-        self.0.close().map_err(|error| error.to_string())
+    /// What was asked and answered meanwhile.
+    pub(super) fn tell_notes(&mut self, log: &mut dyn Observer) {
+        self.0.tell_notes(log);
+    }
+
+    pub(super) fn close(self, log: &mut dyn Observer) -> Result<(), String> {
+        self.0.close(log).map_err(|error| error.to_string())
     }
 }

@@ -32,7 +32,11 @@ impl Network {
         match *self {}
     }
 
-    pub(super) fn close(self) -> Result<(), String> {
+    pub(super) fn tell_notes(&mut self, _: &mut dyn Observer) {
+        match *self {}
+    }
+
+    pub(super) fn close(self, _: &mut dyn Observer) -> Result<(), String> {
         match self {}
     }
 }

@@ -1,8 +1,9 @@
 //! What requests do to a component: inputs set, steps done, start values taken again. The observer is told of each.
 
+use crate::bus::notes::Notes;
 use crate::bus::refusal::Refusal;
 use crate::bus::values::Assignment;
-use crate::component::{Component, Mode, StepReport};
+use crate::component::{Component, Mode, StepReport, Wish};
 use crate::wire::Observer;
 use crate::wire::foxglove::LogLevel;
 
@@ -49,15 +50,22 @@ pub(super) fn reset_with(
     Ok(())
 }
 
-/// One communication step over `h` [s].
+/// One communication step over `h` [s]; notes that come meanwhile are told at its start.
 pub(super) fn advance(
     component: &mut Component,
     h: f64,
     source: &str,
+    notes: Option<&Notes>,
     observer: &mut dyn Observer,
 ) -> Result<StepReport, Refusal> {
     let t = component.time();
-    let done = component.do_step(t, h);
+    let done = match notes {
+        None => component.do_step(t, h),
+        Some(notes) => component.do_step_watched(t, h, &mut |_| {
+            notes.tell(t, observer);
+            Wish::GoOn
+        }),
+    };
     tell_clamped(component, observer);
     match done {
         Ok(report) => {

@@ -36,7 +36,7 @@ impl Protocol {
         let before = assignment.present(component)?;
         assign(component, &assignment, source(request), observer)?;
         let started = Instant::now();
-        let report = match advance(component, h, source(request), observer) {
+        let report = match advance(component, h, source(request), self.notes.as_ref(), observer) {
             Ok(report) => report,
             Err(refusal) => {
                 if component.mode() != Mode::Failed {

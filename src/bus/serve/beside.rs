@@ -6,21 +6,23 @@
 
 use super::desk::{Aside, Desk, Entrances};
 use super::press::Press;
-use super::replies::send_replies;
+use super::replies::{ended, send_replies};
 use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn, wanted};
 use crate::bus::Protocol;
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
-use crate::bus::publish::{LastValues, Publisher, WAITING_BATCHES};
+use crate::bus::notes::{Notes, WAITING_NOTES, tell_refused, tell_taken, tell_unlogged};
+use crate::bus::publish::{LastValues, Publisher};
+use crate::bus::queue::queue;
 use crate::bus::reach::Reach;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::set_point::SetPoint;
 use crate::bus::status::{Shared, Status, lock};
-use crate::bus::tasks::{Note, Task, WAITING_NOTES, WAITING_TASKS, command};
+use crate::bus::tasks::{Task, WAITING_TASKS};
 use crate::bus::values::{self, Assignment};
 use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::foxglove::LogLevel;
-use crate::wire::messages::{AppliedEvent, Command, CommandKind};
+use crate::wire::messages::{AppliedEvent, Command};
 use crate::wire::{Both, Moment, Observer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,10 +40,12 @@ pub struct Beside {
     shared: Arc<Shared>,
     aside: Arc<Aside>,
     tasks: Receiver<Task>,
-    notes: Receiver<Note>,
+    notes: Notes,
     entrances: Entrances,
     threads: Vec<JoinHandle<()>>,
     epoch: u64,
+    /// Simulated time that `status` tells [s].
+    time: f64,
     /// The last set-point of each variable, as it was taken (clamped, it may be), until its owner sets it.
     held: BTreeMap<ValueReference, SetPoint>,
 }
@@ -56,7 +60,7 @@ impl Beside {
         let options = wanted::named(options)?;
         let keys = Keys::new(&options.instance)?;
         let (session, reach) = session::open(&options, Some(&keys))?;
-        let (batches, publications) = sync_channel(WAITING_BATCHES);
+        let (batches, publications) = queue();
         let (jobs, replies) = sync_channel(WAITING_REPLIES);
         let (task_queue, tasks) = sync_channel(WAITING_TASKS);
         let (note_queue, notes) = sync_channel(WAITING_NOTES);
@@ -73,7 +77,7 @@ impl Beside {
         );
         let press = Press::new(session.clone(), &keys, particles_wanted)?;
         let threads = vec![
-            spawn("sandgate-publish", move || press.run(&publications))?,
+            spawn("sandgate-publish", move || press.run(publications))?,
             spawn("sandgate-reply", move || send_replies(&replies, &last))?,
         ];
         let aside = Arc::new(Aside {
@@ -97,9 +101,10 @@ impl Beside {
             shared,
             aside,
             tasks,
-            notes,
+            notes: Notes(notes),
             threads,
             epoch: 0,
+            time: component.time(),
             held: BTreeMap::new(),
         };
         beside.update(component);
@@ -128,7 +133,7 @@ impl Beside {
         owned: &[ValueReference],
         other: &mut dyn Observer,
     ) {
-        self.tell_notes(component, other);
+        self.tell_notes(other);
         self.held.retain(|reference, _| !owned.contains(reference));
         while let Ok(task) = self.tasks.try_recv() {
             let Task::SetPoint(point) = task else {
@@ -137,14 +142,15 @@ impl Beside {
             self.shared.waiting_set_points.fetch_sub(1, Relaxed);
             match self.set(component, &point, owned, other) {
                 Ok((reference, values)) => {
+                    tell_taken(self.time, &point, other);
                     self.held.insert(reference, SetPoint { values, ..point });
                 }
-                Err(refusal) => self.refuse(component, &refusal, other),
+                Err(refusal) => self.refuse(&point, &refusal, other),
             }
         }
         for point in self.held.values().cloned().collect::<Vec<_>>() {
             if let Err(refusal) = self.hold(component, &point, other) {
-                self.refuse(component, &refusal, other);
+                self.refuse(&point, &refusal, other);
             }
         }
     }
@@ -203,29 +209,17 @@ impl Beside {
         }
     }
 
-    fn refuse(&mut self, component: &Component, refusal: &Refusal, other: &mut dyn Observer) {
+    fn refuse(&mut self, point: &SetPoint, refusal: &Refusal, other: &mut dyn Observer) {
         self.shared.refused_set_points.fetch_add(1, Relaxed);
-        let text = format!("set-point refused: {refusal}");
         let mut both = Both(other, &mut self.publisher);
-        both.on_log(component.time(), LogLevel::Warning, "bus", &text);
+        tell_refused(self.time, point, refusal, &mut both);
     }
 
-    fn tell_notes(&mut self, component: &Component, other: &mut dyn Observer) {
-        while let Ok(note) = self.notes.try_recv() {
-            match note {
-                Note::Refused(text) => {
-                    let mut both = Both(other, &mut self.publisher);
-                    both.on_log(component.time(), LogLevel::Warning, "bus", &text);
-                }
-                Note::Call(mut exchange) => {
-                    let time = component.time();
-                    let request = command(time, &mut exchange, CommandKind::Request);
-                    other.on_command(&request);
-                    let reply = command(time, &mut exchange, CommandKind::Reply);
-                    other.on_reply(&reply);
-                }
-            }
-        }
+    /// What was asked and answered, or refused, since the last call: for `other`, which may be a log. A step may last
+    /// longer than the log may lag behind, so that this is called between internal steps, too.
+    pub fn tell_notes(&mut self, other: &mut dyn Observer) {
+        let mut both = Both(other, &mut self.publisher);
+        self.notes.tell(self.time, &mut both);
     }
 
     /// What `status` says of the log.
@@ -235,6 +229,7 @@ impl Beside {
 
     /// Status and values are those of now.
     fn update(&mut self, component: &Component) {
+        self.time = component.time();
         self.shared.update(Status::of(component, self.epoch, None));
         let rows = values::rows(component.variables(), None).unwrap_or_default();
         // Values of the component's own rows can be read.
@@ -243,13 +238,22 @@ impl Beside {
         }
     }
 
-    /// Ends the session: nobody gets in any more, what waits is published, threads end.
+    /// Ends the session: nobody gets in any more, what waits is published, threads end. `other` hears what was asked since
+    /// the last call; set-points that still wait are refused.
     ///
     /// # Errors
     /// [`BusError::Zenoh`].
-    pub fn close(self) -> Result<(), BusError> {
+    pub fn close(mut self, other: &mut dyn Observer) -> Result<(), BusError> {
         drop(self.entrances);
-        drop(self.tasks);
+        let mut both = Both(other, &mut self.publisher);
+        while let Ok(task) = self.tasks.try_recv() {
+            if let Task::SetPoint(point) = task {
+                tell_refused(self.time, &point, &ended(), &mut both);
+            }
+        }
+        self.notes.tell(self.time, &mut both);
+        let unlogged = self.shared.unlogged_calls.load(Relaxed);
+        tell_unlogged(self.time, unlogged, &mut both);
         drop(self.publisher);
         for thread in self.threads {
             // A panic there was reported by the thread itself, and who waited was answered.

@@ -3,14 +3,16 @@
 use super::replies::{Job, Waiting, busy, ended};
 use super::{WAITING_REPLIES, failed};
 use crate::bus::error::BusError;
+use crate::bus::fields::{cut, text_in};
 use crate::bus::keys::Keys;
+use crate::bus::notes::{Exchange, Note};
 use crate::bus::protocol::Fields;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::reply::Reply;
 use crate::bus::request::{LONGEST_TOLD, Request};
 use crate::bus::set_point::SetPoint;
 use crate::bus::status::{Shared, Status, lock};
-use crate::bus::tasks::{Exchange, Note, Task, WAITING_SET_POINTS, WAITING_TASKS};
+use crate::bus::tasks::{Task, WAITING_SET_POINTS, WAITING_TASKS};
 use crate::bus::verb::Verb;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{SyncSender, TrySendError};
@@ -138,7 +140,8 @@ impl Desk {
         };
         let body = String::from_utf8_lossy(shown).into_owned();
         let exact = !key.contains(['*', '$']);
-        let verb = key.rsplit('/').next().unwrap_or_default().to_owned();
+        let verb = key.split_once("/@rpc/").map_or("", |(_, verb)| verb);
+        let verb = cut(verb);
         let mut waiting = Waiting {
             query: Some(query.clone()),
             key: exact.then_some(key),
@@ -151,7 +154,7 @@ impl Desk {
             Err(refusal) => {
                 waiting.req = Request::req_of(&bytes);
                 let reply = Reply::refusal(&waiting.req, &refusal, &self.shared.status());
-                let (req, client) = (waiting.req.clone(), String::new());
+                let (req, client) = (cut(&waiting.req), cut(&text_in(&bytes, "client")));
                 return self.answer_here(waiting, reply, [verb, req, client, body]);
             }
         };
@@ -212,12 +215,13 @@ impl Desk {
 
     fn on_input(&self, sample: &Sample) {
         let key = sample.key_expr().as_str();
+        let bytes = sample.payload().to_bytes();
         let read = self.keys.variable_of(key).and_then(|variable| {
             if sample.kind() == SampleKind::Delete {
                 let message = format!("{variable}: found a delete, allowed a value");
                 return Err(Refusal::new(Code::BadRequest, message));
             }
-            SetPoint::parse(variable, &sample.payload().to_bytes())
+            SetPoint::parse(variable, &bytes)
         });
         let handed_on = read.and_then(|point| {
             let waiting = &self.shared.waiting_set_points;
@@ -232,7 +236,8 @@ impl Desk {
         });
         if let Err(refusal) = handed_on {
             self.shared.refused_set_points.fetch_add(1, Relaxed);
-            let note = Note::Refused(format!("set-point refused: {refusal}"));
+            let variable = key.split_once("/in/").map_or("", |(_, variable)| variable);
+            let note = Note::Refused(SetPoint::refused(variable, &bytes), refusal);
             if self.notes.try_send(note).is_err() {
                 self.shared.unlogged_calls.fetch_add(1, Relaxed);
             }

@@ -18,15 +18,18 @@ pub use self::outlet::Outlet;
 
 use self::desk::{Desk, Entrances};
 use self::press::Press;
-use self::replies::send_replies;
+use self::replies::{ended, send_replies};
+use super::advice::Advice;
 use super::error::{BusError, words};
 use super::keys::Keys;
+use super::notes::{Notes, WAITING_NOTES};
 use super::protocol::Protocol;
-use super::publish::{LastValues, Publisher, WAITING_BATCHES};
+use super::publish::{LastValues, Publisher};
+use super::queue::queue;
 use super::reach::Reach;
 use super::status::Shared;
 use super::stepping::Stepper;
-use super::tasks::{Note, Task, WAITING_NOTES, WAITING_TASKS};
+use super::tasks::{Task, WAITING_TASKS};
 use super::watch::{Lost, Watch};
 use crate::component::Component;
 use crate::wire::{Both, Observer};
@@ -57,6 +60,8 @@ pub struct ServeOptions {
     pub realtime_factor: Option<f64>,
     /// When the one who steps it counts as lost; none: never.
     pub lost: Option<Lost>,
+    /// Who reads errors.
+    pub advice: Advice,
 }
 
 /// Zenoh's own configuration.
@@ -88,7 +93,6 @@ pub struct Server {
     publisher: Publisher,
     shared: Arc<Shared>,
     tasks: Receiver<Task>,
-    notes: Receiver<Note>,
     watch: Watch,
     entrances: Entrances,
     threads: Vec<JoinHandle<()>>,
@@ -107,12 +111,12 @@ impl Server {
     ) -> Result<Self, BusError> {
         let keys = Keys::new(&options.instance)?;
         let (session, reach) = session::open(options, Some(&keys))?;
-        let mut protocol = Protocol::new(keys.base(), options.realtime_factor);
-
-        let (batches, publications) = sync_channel(WAITING_BATCHES);
+        let (batches, publications) = queue();
         let (jobs, replies) = sync_channel(WAITING_REPLIES);
         let (task_queue, tasks) = sync_channel(WAITING_TASKS);
         let (note_queue, notes) = sync_channel(WAITING_NOTES);
+        let protocol = Protocol::new(keys.base(), options.realtime_factor);
+        let mut protocol = protocol.with_notes(Notes(notes));
         let last = Arc::new(LastValues::default());
         let particles_wanted = Arc::new(AtomicBool::new(false));
         let shared = Arc::new(Shared::new(protocol.status(&component)));
@@ -126,7 +130,7 @@ impl Server {
         );
         let press = Press::new(session.clone(), &keys, particles_wanted)?;
         let threads = vec![
-            spawn("sandgate-publish", move || press.run(&publications))?,
+            spawn("sandgate-publish", move || press.run(publications))?,
             spawn("sandgate-reply", move || send_replies(&replies, &last))?,
         ];
         protocol.begin(&mut component, &mut Both(observer, &mut publisher), "serve")?;
@@ -148,7 +152,6 @@ impl Server {
             publisher,
             shared,
             tasks,
-            notes,
             watch: Watch::new(options.lost),
             threads,
         })
@@ -172,17 +175,13 @@ impl Server {
             protocol: self.protocol,
             shared: &self.shared,
             tasks: self.tasks,
-            notes: self.notes,
             watch: self.watch,
         };
         stepper.run(&mut Both(observer, &mut self.publisher), stop);
-        // Nobody gets in any more; who still waits is answered as the queue is dropped; then the queues of the two
-        // threads have no senders left, and they end when they are empty.
+        // Nobody gets in any more; who still waits is answered; then the queues of the two threads have no senders left,
+        // and they end when they are empty.
         drop(self.entrances);
-        let Stepper {
-            component, tasks, ..
-        } = stepper;
-        drop(tasks);
+        let component = stepper.close(&ended(), &mut Both(observer, &mut self.publisher));
         drop(self.publisher);
         for thread in self.threads {
             // A panic there was reported by the thread itself, and who waited was answered.

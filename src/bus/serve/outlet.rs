@@ -2,7 +2,7 @@
 //!
 //! Answers no request and takes no set-point; those who come late get the last value of each key.
 
-use super::replies::{encoding, find_last_values};
+use super::replies::{encoding, find_last_values, nothing_at};
 use super::{ServeOptions, failed, session, spawn, unsent};
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
@@ -170,7 +170,6 @@ fn answer(query: &Query, last: &LastValues) {
             .wait();
     }
     if found.is_empty() {
-        let message = format!("nothing was published at {} yet", query.key_expr());
-        let _ = query.reply_err(message).wait();
+        let _ = query.reply_err(nothing_at(query.key_expr())).wait();
     }
 }

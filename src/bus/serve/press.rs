@@ -10,11 +10,11 @@ use super::replies::encoding;
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
 use crate::bus::publish::Publication;
+use crate::bus::queue::Taker;
 use crate::wire::keys as topics;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::mpsc::Receiver;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::{Session, Wait as _};
 
@@ -50,7 +50,7 @@ impl Press {
         })
     }
 
-    pub(super) fn run(mut self, batches: &Receiver<Vec<Publication>>) {
+    pub(super) fn run(mut self, batches: Taker) {
         for batch in batches {
             for publication in batch {
                 self.put(&publication);

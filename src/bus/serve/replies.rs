@@ -118,8 +118,7 @@ fn send_last_values(mut waiting: Waiting, last: &LastValues) {
             .wait();
     }
     if found.is_empty() {
-        let message = format!("nothing was published at {} yet", query.key_expr());
-        let refusal = Refusal::new(Code::BadRequest, message);
+        let refusal = Refusal::new(Code::BadRequest, nothing_at(query.key_expr()));
         let reply = Reply::refusal("", &refusal, &waiting.shared.status());
         send_reply(&query, None, &reply.body);
     }
@@ -133,6 +132,17 @@ pub(super) fn find_last_values(query: &Query, last: &LastValues) -> Vec<Publicat
         .filter(|publication| matches(&publication.key))
         .cloned()
         .collect()
+}
+
+/// What is said of a key at which there is no last value.
+pub(super) fn nothing_at(key: &str) -> String {
+    match key.ends_with(".validity") || key.ends_with(']') {
+        true => format!(
+            "nothing is published at {key}: a gauge's validity and the elements of an array stand in the message of their \
+             output, such as out/gauge/NAME.depth"
+        ),
+        false => format!("nothing was published at {key} yet"),
+    }
 }
 
 pub(super) fn encoding(publication: &Publication) -> Encoding {

@@ -2,6 +2,7 @@
 
 use super::wanted::{self, Wanted, as_json, insert};
 use super::{ServeOptions, failed};
+use crate::bus::advice::Advice;
 use crate::bus::endpoints::{self, DEFAULT_LISTEN};
 use crate::bus::error::{BusError, words};
 use crate::bus::keys::Keys;
@@ -35,7 +36,7 @@ pub(super) fn open(
     if may_be_client {
         match wanted.client_of(&wanted.connect) {
             Ok(session) => {
-                alone.map_or(Ok(()), |keys| refuse_twin(&session, keys))?;
+                alone.map_or(Ok(()), |keys| refuse_twin(&session, keys, wanted.advice))?;
                 let through = wanted.connect;
                 return Ok((
                     session,
@@ -81,7 +82,7 @@ impl Wanted {
             };
             let is_router = session.info().routers_zid().wait().next().is_some();
             (peers, routers) = (peers || !is_router, routers || is_router);
-            let answer = alone.map_or(Ok(()), |keys| refuse_twin(&session, keys));
+            let answer = alone.map_or(Ok(()), |keys| refuse_twin(&session, keys, self.advice));
             // It has served; what is left of it ends with the process at the latest.
             let _ = session.close().wait();
             answer?;
@@ -99,7 +100,7 @@ impl Wanted {
         if listen.is_empty() && self.connect.is_empty() {
             listen.push(DEFAULT_LISTEN.to_owned());
         }
-        let (session, listeners) = with_real_ports(config, &listen)?;
+        let (session, listeners) = with_real_ports(config, &listen, self.advice)?;
         let reach = Reach {
             listeners,
             through: self.connect,
@@ -113,6 +114,7 @@ impl Wanted {
 fn with_real_ports(
     mut config: Config,
     wanted: &[String],
+    advice: Advice,
 ) -> Result<(Session, Vec<String>), BusError> {
     let mut attempt = 1;
     loop {
@@ -128,8 +130,9 @@ fn with_real_ports(
             Err(error) => {
                 return Err(BusError::Zenoh {
                     doing: format!(
-                        "listen on {} (port in use? choose another with --listen)",
-                        listeners.join(", ")
+                        "listen on {} (port in use? choose another {})",
+                        listeners.join(", "),
+                        advice.listen()
                     ),
                     reason: words(error),
                 });
@@ -138,7 +141,7 @@ fn with_real_ports(
     }
 }
 
-fn refuse_twin(session: &Session, keys: &Keys) -> Result<(), BusError> {
+fn refuse_twin(session: &Session, keys: &Keys, advice: Advice) -> Result<(), BusError> {
     let twins = session
         .liveliness()
         .get(keys.alive())
@@ -148,6 +151,7 @@ fn refuse_twin(session: &Session, keys: &Keys) -> Result<(), BusError> {
     if twins.iter().any(|reply| reply.result().is_ok()) {
         return Err(BusError::Taken {
             instance: keys.instance().to_owned(),
+            advice,
         });
     }
     Ok(())

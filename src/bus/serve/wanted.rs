@@ -2,9 +2,11 @@
 //! it listens and whom it joins. Opens nothing.
 
 use super::{ServeOptions, ZenohConfig};
+use crate::bus::advice::Advice;
 use crate::bus::endpoints;
 use crate::bus::error::{BusError, words};
 use serde_json::Value;
+use std::path::Path;
 use zenoh::Config;
 
 /// How long a publication waits for a subscriber that does not take it before that subscriber misses it [us], unless the
@@ -15,7 +17,10 @@ const WAIT_BEFORE_DROP: (&str, i64) = (
     50_000,
 );
 
-/// What is wanted of a session. The configuration is whole but for the three others.
+/// Largest configuration file [bytes]: as large as a scene's.
+const LARGEST_FILE: u64 = 4 << 20;
+
+/// What is wanted of a session. The configuration is whole but for mode, listeners and whom it joins.
 #[derive(Clone)]
 pub(super) struct Wanted {
     pub(super) config: Config,
@@ -23,6 +28,7 @@ pub(super) struct Wanted {
     pub(super) mode: Option<String>,
     pub(super) listen: Vec<String>,
     pub(super) connect: Vec<String>,
+    pub(super) advice: Advice,
 }
 
 /// The configuration and what it says of roles and places, checked.
@@ -40,7 +46,7 @@ pub(super) fn configure(options: &ServeOptions) -> Result<Wanted, BusError> {
         listen = of_file("listen/endpoints");
     }
     for endpoint in &listen {
-        endpoints::check_listener(endpoint, options.allow_open_listener)?;
+        endpoints::check_listener(endpoint, options.allow_open_listener, options.advice)?;
     }
     let mut connect = of_file("connect/endpoints");
     connect.extend(options.connect.iter().cloned());
@@ -68,6 +74,7 @@ pub(super) fn configure(options: &ServeOptions) -> Result<Wanted, BusError> {
         mode,
         listen,
         connect,
+        advice: options.advice,
     })
 }
 
@@ -83,8 +90,10 @@ fn check_client(
              mode router"
         )
     } else if connect.is_empty() {
-        "mode is client, and there is nobody to connect to; name a router or peer by --connect or connect.endpoints"
-            .to_owned()
+        format!(
+            "mode is client, and there is nobody to connect to; name a router or peer {}",
+            options.advice.connect()
+        )
     } else {
         return Ok(());
     };
@@ -96,13 +105,35 @@ fn check_client(
 fn read(options: &ServeOptions) -> Result<Config, BusError> {
     let read = match &options.config {
         None => return Ok(Config::default()),
-        Some(ZenohConfig::File(file)) => Config::from_file(file),
+        Some(ZenohConfig::File(file)) => {
+            check_size(file).map_err(|reason| BusError::Config {
+                file: source(options),
+                reason,
+            })?;
+            Config::from_file(file)
+        }
         Some(ZenohConfig::Text(text)) => Config::from_json5(text),
     };
     read.map_err(|error| BusError::Config {
         file: source(options),
         reason: words(error),
     })
+}
+
+/// Zenoh reads a file to its end, which devices and pipes need not have.
+fn check_size(file: &Path) -> Result<(), String> {
+    let remedy = "give a file with Zenoh's configuration";
+    match std::fs::metadata(file) {
+        Ok(found) if !found.is_file() => Err(format!(
+            "found a folder, device or pipe, allowed a file of at most {LARGEST_FILE} bytes; {remedy}"
+        )),
+        Ok(found) if found.len() > LARGEST_FILE => Err(format!(
+            "found {} bytes, allowed {LARGEST_FILE}; {remedy}",
+            found.len()
+        )),
+        // What cannot be looked at cannot be read either, and Zenoh says why.
+        _ => Ok(()),
+    }
 }
 
 /// Where the configuration comes from.
@@ -117,14 +148,25 @@ fn source(options: &ServeOptions) -> String {
 /// The options with what stands in the configuration for who has no command line: `metadata: {sandgate: {instance: "silo-7",
 /// allow_open_listener: true}}`.
 pub(super) fn named(options: &ServeOptions) -> Result<ServeOptions, BusError> {
-    let mut options = options.clone();
+    let mut options = ServeOptions {
+        advice: Advice::Configuration,
+        ..options.clone()
+    };
     let bad = |reason: String| BusError::Config {
         file: "metadata.sandgate".to_owned(),
         reason,
     };
     let metadata = read(&options)?.get_json("metadata").unwrap_or_default();
     let metadata: Value = serde_json::from_str(&metadata).unwrap_or_default();
-    let own = metadata.get("sandgate").and_then(Value::as_object);
+    let own = match metadata.get("sandgate") {
+        None | Some(Value::Null) => None,
+        Some(Value::Object(own)) => Some(own),
+        Some(other) => {
+            return Err(bad(format!(
+                "found {other}, allowed an object such as {{instance: \"silo-7\", allow_open_listener: true}}"
+            )));
+        }
+    };
     for (key, value) in own.into_iter().flatten() {
         match (key.as_str(), value) {
             ("instance", Value::String(name)) => options.instance.clone_from(name),

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::{Choice, warn_unless_complete};
 use crate::cli::{CliError, cannot_print};
 use crate::record::{JsonReader, RawChannel, RawEntry, RawMessage, RawReader, below_base};
+use crate::wire::keys::VERBS;
 
 /// What may be typed after `sandgate log cat`.
 #[derive(Debug, clap::Args)]
@@ -142,7 +143,14 @@ fn words(message: &RawMessage, value: &Value) -> String {
             )
         }
         "sandgate.Command" => {
-            let who = format!("{:?} of {:?}", text("request"), text("client"));
+            let who = match (text("interface").as_str(), text("verb").as_str()) {
+                ("in", variable) => format!("{variable} by {:?}", text("client")),
+                // Of these alone the topic does not say what was asked.
+                ("rpc", verb) if !VERBS.contains(&verb) => {
+                    format!("{verb:?}: {:?} of {:?}", text("request"), text("client"))
+                }
+                _ => format!("{:?} of {:?}", text("request"), text("client")),
+            };
             format!("{who} {} {}", text("status"), text("body"))
         }
         "foxglove.Log" => format!("{} {}: {}", text("level"), text("name"), text("message")),

@@ -150,7 +150,9 @@ fn ended(survey: &Survey) -> String {
             "unknown: the file is cut short; `sandgate log recover` makes a valid one of it"
                 .to_owned()
         }
-        (None, Ending::Complete) => "unknown: the file does not say".to_owned(),
+        (None, Ending::Complete | Ending::Followed { .. }) => {
+            "unknown: the file does not say".to_owned()
+        }
     }
 }
 

@@ -38,8 +38,13 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             done.unchecked
         ))?;
     }
+    if let Ending::Followed { more, .. } = done.ending {
+        say(&format!(
+            "all of the log is in it; the {more} bytes that follow its end are not"
+        ))?;
+    }
     if done.ending == Ending::Complete {
-        say("there was nothing to recover; it is a copy")?;
+        say("there was nothing to recover; it holds all that the first one does")?;
     }
     Ok(())
 }

@@ -118,8 +118,8 @@ fn verdict(file: &Path, done: &Redriven) -> String {
         Ending::Cut { damaged: false, .. } => {
             format!("{file}: same bits up to its cut: {did}; {}", done.ending)
         }
-        Ending::Cut { .. } => format!(
-            "{file}: DIFFERS: equal are {did}, but it is {}",
+        Ending::Cut { .. } | Ending::Followed { .. } => format!(
+            "{file}: DIFFERS: equal are {did}{state}, but it is {}",
             done.ending
         ),
     }

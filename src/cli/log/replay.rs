@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use super::Choice;
-use crate::bus::{Outlet, ServeOptions, ZenohConfig};
+use crate::bus::{Advice, Outlet, ServeOptions, ZenohConfig};
 use crate::cli::{CliError, say, stop};
 use crate::record::{RawEntry, RawMessage, RawReader, Survey, Topics, below_base};
 use crate::wire::foxglove::FrameTransform;
@@ -94,6 +94,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         allow_open_listener: args.allow_open_listener,
         realtime_factor: None,
         lost: None,
+        advice: Advice::CommandLine,
     };
     let stop = stop::on_interrupt("stopping after this message")?;
     let outlet = Outlet::open(&options, args.force)?;

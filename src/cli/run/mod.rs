@@ -18,6 +18,7 @@ mod summary;
 use std::path::{Path, PathBuf};
 
 use super::{CliError, load_scene, quantity, stop};
+use crate::component::read_saved;
 use session::Session;
 
 pub(super) use summary::bound_name;
@@ -88,12 +89,15 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         None => None,
     };
     let resumed = match &args.resume {
-        Some(file) => Some(std::fs::read(file).map_err(|source| CliError::File {
-            action: "read saved state",
-            path: file.clone(),
-            source,
-            remedy: "give the checkpoint.state of an earlier run",
-        })?),
+        Some(file) => {
+            let read = std::fs::File::open(file).and_then(read_saved);
+            Some(read.map_err(|source| CliError::File {
+                action: "read saved state",
+                path: file.clone(),
+                source,
+                remedy: "give the checkpoint.state of an earlier run",
+            })?)
+        }
         None => None,
     };
     let component = session::ready(&scene, resumed.as_deref(), &plan)?;

@@ -2,8 +2,8 @@
 
 use crate::component;
 use crate::record::RecordError;
+use crate::record::ending::Ending;
 use crate::record::error::ReadError;
-use crate::record::raw::Ending;
 use crate::scene;
 use std::path::PathBuf;
 
@@ -35,13 +35,16 @@ impl Redriven {
         self.compared > 0 || self.same_state.is_some() || self.difference.is_some()
     }
 
-    /// Whether nothing differs and no byte of the log was changed. True also for a log that was cut short, as far as it
+    /// Whether nothing differs and no byte of the log was changed or added. True also for a log that was cut short, as far as it
     /// goes; [`Redriven::ending`] tells.
     #[must_use]
     pub fn is_same(&self) -> bool {
         self.difference.is_none()
             && self.same_state != Some(false)
-            && !matches!(self.ending, Ending::Cut { damaged: true, .. })
+            && !matches!(
+                self.ending,
+                Ending::Cut { damaged: true, .. } | Ending::Followed { .. }
+            )
     }
 }
 

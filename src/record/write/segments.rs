@@ -103,6 +103,7 @@ impl Recorder {
     ) -> Result<Self, RecordError> {
         let options = RecordOptions {
             reason: reason.to_owned(),
+            begins: None,
             ..self.options.clone()
         };
         let sink = Box::new(next.create()?);

@@ -6,13 +6,14 @@ use super::geometry::{Region, cross, edges};
 use super::walls::Solid;
 use crate::math::{dot, sub};
 use crate::scene::raw::Place;
+use crate::units::shown_bound;
 
 impl Lift<'_> {
     /// Bodies start outside walls, closed gates and drains.
     pub(super) fn check_bodies_against_devices(&mut self) {
         let eps = self.eps();
         let spacing = self.spacing.unwrap_or(0.0);
-        let mut hits = Vec::new();
+        let (mut hits, mut thin) = (Vec::new(), Vec::new());
         for (place, region) in &self.filled {
             let plates = self.plates.iter().map(|d| {
                 let remedy = "move the body: material belongs on the left of a gate's way from `from` to `to`";
@@ -35,8 +36,12 @@ impl Lift<'_> {
                 }
             }
             for (other, solid) in &self.solids {
-                if let Some(hit) = solid.meets(region, spacing, eps) {
-                    hits.push((place, format!("{} {}", hit.how(), other.key), hit.remedy()));
+                match solid.meets(region, spacing, eps) {
+                    Some(Hit::TooThin(most)) => thin.push((place, other.key.clone(), most)),
+                    Some(hit) => {
+                        hits.push((place, format!("{} {}", hit.how(), other.key), hit.remedy()));
+                    }
+                    None => {}
                 }
             }
         }
@@ -46,6 +51,17 @@ impl Lift<'_> {
                 found,
                 "bodies clear of walls, gates and outflows; touching is fine",
                 remedy,
+            );
+        }
+        for (place, wall, most) in thin {
+            self.problems.report(
+                place,
+                format!(
+                    "half a spacing of {} m behind a face of {wall} is its other side, and this body there",
+                    shown_bound(spacing)
+                ),
+                format!("a spacing of at most {} m beside a wall as thin", shown_bound(round_down(most))),
+                Hit::TooThin(most).remedy(),
             );
         }
     }
@@ -80,6 +96,8 @@ pub(super) enum Hit {
     Crosses,
     /// It lies in the first row of a chain's particles.
     OnTheRight,
+    /// The first row behind one part of a chain lies before another: the wall is too thin there for spacings above this [m].
+    TooThin(f64),
 }
 
 impl Hit {
@@ -89,6 +107,7 @@ impl Hit {
             Hit::Behind => "reaches behind",
             Hit::Crosses => "crosses",
             Hit::OnTheRight => "lies behind (to the right of)",
+            Hit::TooThin(_) => "lies before the back of",
         }
     }
 
@@ -98,6 +117,9 @@ impl Hit {
             Hit::Behind => "turn the plane's normal towards the material, or move the body",
             Hit::OnTheRight => {
                 "reverse the order of the wall's points, or move the body to the wall's left"
+            }
+            Hit::TooThin(_) => {
+                "refine numerics.spacing (or solver.quality, solver.resolution_scale), or thicken the wall there"
             }
         }
     }
@@ -122,17 +144,17 @@ impl Solid {
                 };
                 (0..8).any(behind).then_some(Hit::Behind)
             }
-            Solid::Polyline(segments) => segments.iter().find_map(|&(a, b)| {
-                let Region::Polygon(points) = region else {
-                    return None;
+            Solid::Polyline(segments) => {
+                let hits = segments
+                    .iter()
+                    .flat_map(|&segment| meets_chain(segments, segment, region, spacing, eps));
+                // Where the body is in the wall, its thin parts are no matter.
+                let worst = |hit: &Hit| match hit {
+                    Hit::TooThin(most) => *most,
+                    _ => f64::NEG_INFINITY,
                 };
-                if edges(points).any(|e| cross(e, (a, b), eps)) {
-                    return Some(Hit::Crosses);
-                }
-                probes_behind(a, b, spacing)
-                    .any(|p| region.holds(p, eps))
-                    .then_some(Hit::OnTheRight)
-            }),
+                hits.min_by(|a, b| worst(a).total_cmp(&worst(b)))
+            }
         }
     }
 
@@ -154,14 +176,66 @@ impl Solid {
     }
 }
 
-/// Points half a spacing to the right of a segment: the wall's first row of particles.
-fn probes_behind(a: [f64; 2], b: [f64; 2], spacing: f64) -> impl Iterator<Item = [f64; 3]> {
+/// Three digits of a length above 0, none of them too large.
+fn round_down(length: f64) -> f64 {
+    let unit = 10.0_f64.powi(length.log10().floor() as i32 - 2);
+    (length / unit).floor() * unit
+}
+
+type Segment = ([f64; 2], [f64; 2]);
+
+/// How a body meets one segment of a chain where it must not.
+fn meets_chain(
+    chain: &[Segment],
+    (a, b): Segment,
+    region: &Region,
+    spacing: f64,
+    eps: f64,
+) -> Vec<Hit> {
+    let Region::Polygon(points) = region else {
+        return Vec::new();
+    };
+    if edges(points).any(|e| cross(e, (a, b), eps)) {
+        return vec![Hit::Crosses];
+    }
+    let probes = probes_behind(a, b, spacing);
+    let met = probes.filter(|(_, probe)| region.holds([probe[0], probe[1], 0.0], eps));
+    met.map(|(foot, probe)| {
+        let others = chain.iter().filter(|other| **other != (a, b));
+        let nearest = others.filter_map(|other| share_before((foot, probe), *other));
+        match nearest.reduce(f64::min) {
+            // Twice the way to the other side, as the probe lies half a spacing away.
+            Some(share) => Hit::TooThin(share * spacing),
+            None => Hit::OnTheRight,
+        }
+    })
+    .collect()
+}
+
+/// Share of the way `from` - `to` at which it crosses a segment.
+fn share_before((from, to): Segment, (a, b): Segment) -> Option<f64> {
+    let turn = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
+    let between = |u: [f64; 2], v: [f64; 2]| [v[0] - u[0], v[1] - u[1]];
+    let (way, along, to_a) = (between(from, to), between(a, b), between(from, a));
+    let slant = turn(way, along);
+    let (share, place) = (turn(to_a, along) / slant, turn(to_a, way) / slant);
+    // Of parallels both are no numbers.
+    ((0.0..=1.0).contains(&share) && (0.0..=1.0).contains(&place)).then_some(share)
+}
+
+/// Points on a segment, each with the one half a spacing to the right of it: the wall's first row of particles.
+fn probes_behind(
+    a: [f64; 2],
+    b: [f64; 2],
+    spacing: f64,
+) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let size = dx.hypot(dy);
     let count = (size / spacing).clamp(1.0, 100.0).round();
     let (nx, ny) = (dy / size * spacing / 2.0, -dx / size * spacing / 2.0);
     (0..count as usize).map(move |i| {
         let t = (i as f64 + 0.5) / count;
-        [a[0] + t * dx + nx, a[1] + t * dy + ny, 0.0]
+        let foot = [a[0] + t * dx, a[1] + t * dy];
+        (foot, [foot[0] + nx, foot[1] + ny])
     })
 }

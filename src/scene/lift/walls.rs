@@ -6,6 +6,7 @@ use super::geometry::Region;
 use crate::math::{cross, length, normalized, sub};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
 use crate::scene::types::{Dimension, Gate, Point, Slip, Wall, WallGeometry};
+use crate::units::shown_bound;
 
 /// Rows of wall particles: a gate is at least this many spacings deep.
 const ROWS: f64 = 4.0;
@@ -255,7 +256,10 @@ impl Lift<'_> {
             self.problems.report(
                 &at.place,
                 format!("{} m", at.value.0),
-                format!("at least {least} m, four times numerics.spacing"),
+                format!(
+                    "at least {} m, four times numerics.spacing",
+                    shown_bound(least)
+                ),
                 "thicken the gate, leave thickness out, or refine numerics.spacing",
             );
         }
@@ -292,13 +296,18 @@ impl Lift<'_> {
             let longest = length(&edge).max(length(&span));
             (length(&across) / longest).min(length(&edge))
         };
-        let good = thin >= least && thin > 0.0;
+        // But for rounding: 0.0875 - 0.0375 is a little less than 0.05.
+        let good = thin >= least * (1.0 - 1e-9) && thin > 0.0;
         if !good {
             self.problems.report(
                 place,
-                format!("a face {} m wide", if thin.is_nan() { 0.0 } else { thin }),
                 format!(
-                    "at least {least} m, two spacings; in space span is not parallel to from - to"
+                    "a face {} m wide",
+                    shown_bound(if thin.is_nan() { 0.0 } else { thin })
+                ),
+                format!(
+                    "at least {} m, two spacings; in space span is not parallel to from - to",
+                    shown_bound(least)
                 ),
                 "move from and to apart, or refine numerics.spacing",
             );

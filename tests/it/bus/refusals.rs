@@ -206,6 +206,22 @@ fn a_listener_that_others_can_reach_is_refused_unless_it_is_meant() {
         let message = refused.err().unwrap().to_string();
         assert!(message.contains("--allow-open-listener"), "{message}");
     }
+    let large = format!("{{listen: {{}} }} // {}", " ".repeat(4 << 20));
+    let large = open(&[], Some(&large)).err().unwrap().to_string();
+    assert!(large.contains("allowed 4194304"), "{large}");
+    let endless = ServeOptions {
+        instance: "small_silo".into(),
+        config: Some(ZenohConfig::File("/dev/zero".into())),
+        ..ServeOptions::default()
+    };
+    let endless = Server::open(silo(), &endless, &mut Unobserved)
+        .err()
+        .unwrap();
+    let endless = endless.to_string();
+    assert!(
+        endless.contains("a folder, device or pipe, allowed a file"),
+        "{endless}"
+    );
     let broken = open(&[], Some("{listen: 7}")).err().unwrap();
     assert!(matches!(broken, BusError::Config { .. }), "{broken}");
     let server = open(&[], Some("{listen: {endpoints: ['tcp/127.0.0.2:0']}}")).unwrap();

@@ -197,3 +197,58 @@ fn behind_changed_bytes_nothing_is_recovered() {
         }
     }
 }
+
+#[test]
+fn bytes_behind_the_end_are_told_and_are_no_part_of_the_log() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let log = std::fs::read(logged().join("run.mcap")).unwrap();
+    for (name, more, told) in [
+        ("noise", b"noise".to_vec(), "they are no log"),
+        ("twice", log.clone(), "a log of its own"),
+    ] {
+        let path = folder.path().join(format!("{name}.mcap"));
+        std::fs::write(&path, [&log[..], &more].concat()).unwrap();
+        let behind = format!("; {} bytes follow its end and were not read", more.len());
+        let said = |words: &[&str]| {
+            let words = words.iter().map(OsStr::new);
+            let all: Vec<_> = [OsStr::new("log")].into_iter().chain(words).collect();
+            let output = sandgate(&all);
+            let said = text(&output.stdout) + &text(&output.stderr);
+            (output.status.code(), said)
+        };
+        let file = path.to_str().unwrap();
+        for words in [&["info", file][..], &["cat", file, "--topic", "out/log"]] {
+            let (code, said) = said(words);
+            assert!(code == Some(0) && said.contains(&behind), "{said}");
+            assert!(said.contains(told), "{said}");
+        }
+        let (code, checked) = said(&["redrive", file, "--check"]);
+        assert!(code == Some(7) && checked.contains(&behind), "{checked}");
+        let whole = folder.path().join(format!("{name}-whole.mcap"));
+        let (code, recovered) = said(&["recover", file, whole.to_str().unwrap()]);
+        assert!(
+            code == Some(0) && recovered.contains(&behind),
+            "{recovered}"
+        );
+        let left_out = format!("the {} bytes that follow its end are not", more.len());
+        assert!(recovered.contains(&left_out), "{recovered}");
+        assert_eq!(Survey::of(&whole).unwrap().ending, Ending::Complete);
+        let (code, _) = said(&["redrive", whole.to_str().unwrap(), "--check"]);
+        assert_eq!(code, Some(0));
+    }
+    // The way that is told to the second log.
+    let path = folder.path().join("twice.mcap");
+    let Ending::Followed { byte, .. } = Survey::of(&path).unwrap().ending else {
+        panic!("not followed")
+    };
+    assert_eq!(byte, log.len() as u64);
+}
+
+#[test]
+fn what_is_no_file_is_refused_with_what_to_do() {
+    for path in ["/dev/zero", "."] {
+        let said = Survey::of(Path::new(path)).unwrap_err().to_string();
+        assert!(said.contains("found a folder, pipe or device"), "{said}");
+        assert!(said.contains("`cat > run.mcap`"), "{said}");
+    }
+}

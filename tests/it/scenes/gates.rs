@@ -41,3 +41,42 @@ until = 1
     let space = scene::parse("gate.toml", &scene(3, ", 0", ", 0.1", gate)).unwrap();
     scene::build::<3>(&space).unwrap();
 }
+
+/// The silo of the cases with another spacing.
+fn silo(spacing: &str) -> Result<scene::Scene, scene::SceneErrors> {
+    let path = crate::python::root().join("cases/silo_gate.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let coarser = text.replacen(
+        "spacing = \"3.125 mm\"",
+        &format!("spacing = \"{spacing}\""),
+        1,
+    );
+    assert_ne!(text, coarser);
+    scene::parse("silo_gate.toml", &coarser)
+}
+
+#[test]
+fn a_wall_thinner_than_the_spacing_is_told_as_that() {
+    // The lip of the outlet, chamfered below, comes nearer to the floor than half a spacing.
+    let said = silo("24 mm").unwrap_err().to_string();
+    assert!(
+        said.contains("behind a face of walls.left is its other side"),
+        "{said}"
+    );
+    assert!(said.contains("a spacing of at most 0.02 m"), "{said}");
+    assert!(said.contains("refine numerics.spacing"), "{said}");
+    assert!(!said.contains("reverse"), "{said}");
+    silo("20 mm").unwrap();
+}
+
+#[test]
+fn a_gate_may_be_two_spacings_wide_however_that_is_rounded() {
+    let said = silo("25 mm").unwrap_err().to_string();
+    assert!(!said.contains("gates.main"), "{said}");
+    let said = silo("26 mm").unwrap_err().to_string();
+    let wide = "a face 0.05 m wide";
+    assert!(
+        said.contains(wide) && said.contains("at least 0.052 m"),
+        "{said}"
+    );
+}
