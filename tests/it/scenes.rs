@@ -356,6 +356,23 @@ fn messages_are_blocks_that_people_can_read() {
     );
 }
 
+/// A material that nothing is made of changes nothing, whatever stands before it, and costs nothing: it is not in the scene.
+#[test]
+fn materials_that_nothing_is_made_of_are_left_out() {
+    let plain = case("column_collapse");
+    let water = "[materials.a_water]\nlaw = \"fluid\"\npreset = \"water\"\n\n[materials.sand]";
+    let text = plain.source.replace("[materials.sand]", water);
+    let with = scene::parse("column.toml", &text).unwrap();
+    assert_eq!(with.unused_materials, ["a_water"]);
+    assert!(plain.unused_materials.is_empty());
+    assert_eq!(with.materials, plain.materials);
+    assert_eq!(with.numerics, plain.numerics);
+    assert_eq!(with.bodies, plain.bodies);
+    let parameter = |a: &scene::Adjustable| a.name.clone();
+    let parameters = |s: &Scene| s.adjustables.iter().map(parameter).collect::<Vec<_>>();
+    assert_eq!(parameters(&with), parameters(&plain));
+}
+
 #[test]
 fn the_reference_of_scene_files_is_fresh() {
     let path = root().join("docs/scene.md");

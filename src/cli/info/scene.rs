@@ -36,6 +36,11 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
         let about = material(&named.material);
         text.push_str(&format!("  material {}: {about}\n", named.name));
     }
+    for name in &scene.unused_materials {
+        text.push_str(&format!(
+            "  material {name}: left out, nothing is made of it\n"
+        ));
+    }
     for line in parts(scene) {
         text.push_str(&format!("  {line}\n"));
     }

@@ -21,6 +21,7 @@ mod pressures;
 mod profile;
 mod run;
 mod scheme;
+mod unused;
 mod walls;
 
 use super::Quality;
@@ -37,16 +38,22 @@ pub(crate) use numerics::MOST_PARTICLES;
 /// The scene, or `None` if a problem was reported.
 pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Option<Scene> {
     let mut lift = Lift::new(raw, problems);
-    let materials = lift.materials();
-    let bodies = lift.bodies();
+    let mut materials = lift.materials();
+    let mut bodies = lift.bodies();
     lift.check_velocity_profiles(&materials, &bodies);
     let walls = lift.walls();
     let gates = lift.gates();
-    let inflows = lift.inflows(&materials);
+    let mut inflows = lift.inflows(&materials);
     let outflows = lift.outflows();
-    let gauges = lift.gauges();
+    let mut gauges = lift.gauges();
     lift.check_bodies_against_devices();
     lift.check_something_flows();
+    let unused_materials = if lift.problems.is_empty() {
+        unused::drop_unused(&mut materials, &mut bodies, &mut inflows, &mut gauges)
+    } else {
+        // What refers to a material may be among what was refused.
+        Vec::new()
+    };
     let numerics = lift.numerics(&materials);
     let quality = raw.numerics.as_ref().and_then(|n| n.value.quality.as_ref());
     let quality = quality.map(|word| Quality::of_word(word.value));
@@ -55,7 +62,12 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     let log = lift.log(run);
     let (dimension, domain) = (lift.dimension, lift.domain);
     let domain = domain?;
-    let adjustables = super::adjust::adjustables(raw, &bodies, &domain, dimension);
+    let mut adjustables = super::adjust::adjustables(raw, &bodies, &domain, dimension);
+    let of_unused = |name: &str| {
+        let of = |material: &String| name.starts_with(&format!("material.{material}."));
+        unused_materials.iter().any(of)
+    };
+    adjustables.retain(|a| !of_unused(&a.name));
     Some(Scene {
         name: raw.name.as_ref()?.value.0.clone(),
         title: raw.title.as_ref()?.value.0.clone(),
@@ -65,6 +77,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
         quality: quality?,
         numerics: numerics?,
         materials: materials.into_iter().collect::<Option<_>>()?,
+        unused_materials,
         bodies,
         walls,
         gates,

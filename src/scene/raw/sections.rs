@@ -16,7 +16,7 @@ table! {
         required domain: RawDomain;
         /// Resolution and every numerical choice.
         required numerics: RawNumerics;
-        /// At least one; bodies and inflows refer to them by name.
+        /// At least one; bodies, inflows and gauges refer to them by name. What none refers to is left out.
         required materials: Named<RawMaterial>;
         /// What is there at the start; a scene without bodies needs an inflow.
         optional bodies: Named<RawBody>;

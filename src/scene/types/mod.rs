@@ -61,6 +61,8 @@ pub struct Scene {
     pub numerics: Numerics,
     /// Materials by name; bodies and inflows refer to them by index.
     pub materials: Vec<NamedMaterial>,
+    /// Names of those in the file that no body, inflow or gauge refers to: left out.
+    pub unused_materials: Vec<String>,
     /// What is there at the start.
     pub bodies: Vec<Body>,
     /// Walls: they stand, slide along themselves like a belt, or move as a whole.
