@@ -114,7 +114,7 @@ const RULES: &[(&str, &[&str])] = &[
         &["every_case_s_fmus_pass_all_checks", "test_fmi_library_has_no_complaint_about_any_case", "test_ecos", "test_libcosim"]),
     ("a scene of several phases (a silted dam) is an FMU like any other: levels and discharge of each phase, states, logs, parameters",
         &["test_water_and_silt_flow_out_and_every_kilogram_is_accounted_for", "test_states_go_back_and_to_other_instances_with_the_same_bits", "test_its_log_runs_again_with_roll_backs", "test_levels_and_materials_are_parameters"]),
-    ("a controller that moves the gate holds a depth to 2 % root mean square, and a master that does each step three times from saved states gets the same trajectory",
+    ("a controller that moves the gate holds a depth within 5 %, and a master that does each step three times from saved states gets the same trajectory",
         &["test_the_depth_is_held_with_and_without_roll_back"]),
     ("an ensemble over parameters and inputs has the bits of a serial run on any number of workers, also when one is killed", &["test_a_killed_worker_changes_no_bit_and_costs_a_slice"]),
     ("the C interface leaves memory alone and nothing behind, under valgrind and the address sanitizer", &["a_client_in_c_leaves_its_memory_alone_and_nothing_behind"]),
