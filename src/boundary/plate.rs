@@ -116,36 +116,75 @@ impl<const D: usize> Plate<D> {
         }
     }
 
-    /// Where a shut plate meets the end of a wall, the two bodies touch at a point, and a fluid seeps through between them: fills
+    /// Where a shut plate meets the end of a wall, the two bodies touch at an edge, and a fluid seeps through between them: fills
     /// what lies beyond the plate's ends, as far as `is_free`. Beyond the far end it stays until the plate has left it; beyond the
-    /// leading edge it comes out of the edge as that closes the last of the way, and goes as it opens.
-    pub fn fill_corners(&mut self, ends: [Meets; 2], is_free: impl Fn(&Vector<D>) -> bool) {
-        if D == 3 {
-            return;
-        }
+    /// leading edge it comes out of the edge as that closes the last of the way, and goes as it opens. At an end that is not known to
+    /// meet anything, walls that it meets at no more than its edge are looked for: `stands` says where something does.
+    pub fn fill_corners(
+        &mut self,
+        ends: [Meets; 2],
+        stands: impl Fn(&Vector<D>) -> bool,
+        is_free: impl Fn(&Vector<D>) -> bool,
+    ) {
         let first = 0.5 * self.step;
         let across = self.points.iter().filter(|p| p.along == first);
         let across: Vec<Vector<D>> = across.map(|p| p.offset).collect();
-        for row in 0..ROWS {
-            let beyond = (row as f64 + 0.5) * self.step;
-            for (end, along) in [-beyond, self.length + beyond].into_iter().enumerate() {
-                let group = match ends[end] {
-                    Meets::Nothing => continue,
-                    Meets::Corner => self.group,
+        let mut filled = Vec::new();
+        for (end, meets) in ends.into_iter().enumerate() {
+            for offset in &across {
+                let group = match meets {
                     Meets::Face(group) => group,
+                    Meets::Nothing if !self.meets_at_edge(end, offset, &stands) => continue,
+                    Meets::Corner | Meets::Nothing => self.group,
                 };
-                let place =
-                    |offset: &Vector<D>| add(&add(&self.from, &scale(along, &self.axis)), offset);
-                let fills = across.iter().filter(|o| is_free(&place(o)));
-                let point = |offset: &Vector<D>| Point {
-                    along,
-                    offset: *offset,
-                    group,
-                };
-                let filled: Vec<_> = fills.map(point).collect();
-                self.points.extend(filled);
+                for row in 0..ROWS {
+                    let along = self.beyond(end, row as f64 + 0.5);
+                    if is_free(&self.at(along, offset)) {
+                        filled.push(Point {
+                            along,
+                            offset: *offset,
+                            group,
+                        });
+                    }
+                }
             }
         }
+        self.points.extend(filled);
+    }
+
+    /// Coordinate along the axis so many steps beyond an end [m].
+    fn beyond(&self, end: usize, steps: f64) -> f64 {
+        if end == 0 {
+            -steps * self.step
+        } else {
+            self.length + steps * self.step
+        }
+    }
+
+    /// Place of a shut plate's point.
+    fn at(&self, along: f64, offset: &Vector<D>) -> Vector<D> {
+        add(&add(&self.from, &scale(along, &self.axis)), offset)
+    }
+
+    /// Whether something stands across from the plate's edge, which it meets there and nowhere else.
+    fn meets_at_edge(
+        &self,
+        end: usize,
+        offset: &Vector<D>,
+        stands: &impl Fn(&Vector<D>) -> bool,
+    ) -> bool {
+        // On the face, where this line across the plate has its end.
+        let on_face = sub(offset, &scale(dot(offset, &self.normal), &self.normal));
+        let place = |steps: f64, before: f64| {
+            let x = self.at(self.beyond(end, steps), &on_face);
+            add(&x, &scale(before * self.step, &self.normal))
+        };
+        stands(&place(0.5, 0.5)) && !stands(&place(-0.5, 0.5)) && !stands(&place(0.5, -0.5))
+    }
+
+    /// Where its points are when it is shut [m].
+    pub fn shut(&self) -> impl Iterator<Item = Vector<D>> + '_ {
+        self.points.iter().map(|p| self.at(p.along, &p.offset))
     }
 
     /// Adds its points to the wall points, at opening 0.

@@ -1,12 +1,14 @@
 //! Scene to what the solver runs: particles, wall points, devices. The last module that knows scenes.
 
 mod inflows;
+mod joins;
 mod overlap;
 mod particles;
+mod places;
 mod plates;
 mod walls;
 
-use crate::boundary::WallPoints;
+use crate::boundary::{Plate, WallPoints};
 use crate::math::{Geometry, Vector};
 use crate::solver::{Periodic, Plan, Scheme, Sink};
 use crate::state::State;
@@ -15,6 +17,7 @@ use super::elements::elements;
 use super::ghosts::ghost_depth;
 use super::{Dimension, Point, Scene};
 use inflows::source;
+use joins::{Standing, join_boxes};
 use overlap::check_overlap;
 use particles::{spins, state};
 use plates::{plates, with_plates};
@@ -34,12 +37,12 @@ pub fn narrow<const D: usize>(point: &Point) -> Vector<D> {
 /// A sentence: no particles and no inflow, a particle inside a wall, a periodic side too short for the kernel.
 pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), String> {
     let periodic = periodic::<D>(scene)?;
-    let walls = match scene.numerics.scheme {
+    let mut walls = match scene.numerics.scheme {
         Scheme::PaperB(_) => elements::<D>(scene),
         Scheme::Implicit | Scheme::PaperA(_) => walls::<D>(scene, &periodic),
     };
     let movers = movers(scene, &walls);
-    let sources = scene.inflows.iter().map(|i| source(scene, i)).collect();
+    let sources: Vec<_> = scene.inflows.iter().map(|i| source(scene, i)).collect();
     let sinks = scene
         .outflows
         .iter()
@@ -54,7 +57,23 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     };
     let state = state(scene, &roofs(scene, &walls))?;
     let spins = spins(scene);
-    let plates = plates(scene, &walls, &state.grains.position);
+    let sides = std::array::from_fn(|k| {
+        (periodic.length[k] > 0.0).then(|| {
+            let lower = scene.domain.lower[k];
+            (lower, lower + periodic.length[k])
+        })
+    });
+    let plates = plates(scene, &walls, &state.grains.position, &sides);
+    if scene.numerics.scheme == Scheme::Implicit {
+        let slots = sources.iter().flat_map(|s| s.slots.iter().copied());
+        let standing = Standing {
+            plates: plates.iter().flat_map(Plate::shut).collect(),
+            grains: &state.grains.position,
+            slots: slots.collect(),
+            sides,
+        };
+        join_boxes(scene, &mut walls, &standing);
+    }
     let plan = Plan {
         numerics: scene.numerics.clone(),
         gravity: narrow(&scene.domain.gravity),
@@ -82,7 +101,8 @@ fn roofs<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<Vector<D>>
         return Vec::new();
     }
     let openings: Vec<f64> = scene.gates.iter().map(|g| g.start).collect();
-    let all = with_plates(walls, &plates(scene, walls, &[]), &openings);
+    let plates = plates(scene, walls, &[], &[None; D]);
+    let all = with_plates(walls, &plates, &openings);
     let shown = all
         .position
         .iter()

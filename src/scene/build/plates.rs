@@ -5,6 +5,7 @@ use crate::math::{Vector, dot, norm, sub};
 use crate::solver::Scheme;
 
 use super::narrow;
+use super::places::{Places, STANDS, TAKEN};
 use crate::scene::{Dimension, Gate, Scene, WallGeometry};
 
 /// Least cosine between a gate's face and one that goes on from it [1].
@@ -39,52 +40,72 @@ fn corners<const D: usize>(scene: &Scene) -> Vec<Corner<D>> {
     corners
 }
 
+/// What a shut plate meets at its ends by the corners of polylines that are there.
+fn meets<const D: usize>(ends: &[Vector<D>; 2], corners: &[Corner<D>], dp: f64) -> [Meets; 2] {
+    let axis = sub(&ends[1], &ends[0]);
+    [(&ends[0], -1.0), (&ends[1], 1.0)].map(|(end, out)| {
+        let met = corners
+            .iter()
+            .filter(|c| norm(&sub(&c.place, end)) < 0.5 * dp);
+        let goes_on = |c: &&Corner<D>| {
+            let along = c.next.iter().map(|next| sub(next, &c.place));
+            along
+                .into_iter()
+                .any(|d| dot(&d, &axis) * out > COPLANAR * norm(&d) * norm(&axis))
+        };
+        match met.clone().find(goes_on) {
+            Some(corner) => Meets::Face(corner.group),
+            None if met.count() > 0 => Meets::Corner,
+            None => Meets::Nothing,
+        }
+    })
+}
+
 /// The plates of the gates, behind fixed walls and what lies there at the start.
 pub(super) fn plates<const D: usize>(
     scene: &Scene,
     walls: &WallPoints<D>,
     grains: &[Vector<D>],
+    sides: &[Option<(f64, f64)>; D],
 ) -> Vec<Plate<D>> {
     let dp = scene.numerics.spacing;
-    let number = |n: usize| (scene.walls.len() + n) as u16;
     let corners = corners(scene);
-    let ghosts = scene.numerics.scheme != Scheme::Implicit;
+    let rings = scene.dimension == Dimension::Axisymmetric;
+    let ends = |g: &Gate| -> [Vector<D>; 2] { [narrow(&g.from), narrow(&g.to)] };
     let plate = |(n, g): (usize, &Gate)| {
-        let ends: [Vector<D>; 2] = [narrow(&g.from), narrow(&g.to)];
-        let mut plate = Plate::new(
-            ends,
+        let group = (scene.walls.len() + n) as u16;
+        Plate::new(
+            ends(g),
             &narrow(&g.span),
             g.thickness,
             g.max_speed,
             dp,
-            number(n),
-        );
-        let near = |x: &Vector<D>, y: &Vector<D>, reach: f64| norm(&sub(x, y)) < reach * dp;
-        let axis = sub(&ends[1], &ends[0]);
-        let meets = |(end, out): (&Vector<D>, f64)| {
-            let met = corners.iter().filter(|c| near(&c.place, end, 0.5));
-            let goes_on = |c: &&Corner<D>| {
-                let along = c.next.iter().map(|next| sub(next, &c.place));
-                along
-                    .into_iter()
-                    .any(|d| dot(&d, &axis) * out > COPLANAR * norm(&d) * norm(&axis))
-            };
-            match met.clone().find(goes_on) {
-                _ if ghosts => Meets::Nothing,
-                Some(corner) => Meets::Face(corner.group),
-                None if met.count() > 0 => Meets::Corner,
-                None => Meets::Nothing,
-            }
-        };
-        let rings = scene.dimension == Dimension::Axisymmetric;
-        plate.fill_corners([meets((&ends[0], -1.0)), meets((&ends[1], 1.0))], |x| {
-            let mut others = walls.position.iter().chain(grains);
-            let across_the_axis = rings && x[0] <= 0.0;
-            !across_the_axis && !others.any(|y| near(x, y, 0.7))
-        });
-        plate
+            group,
+        )
     };
-    scene.gates.iter().enumerate().map(plate).collect()
+    let mut plates: Vec<Plate<D>> = scene.gates.iter().enumerate().map(plate).collect();
+    if scene.numerics.scheme != Scheme::Implicit {
+        return plates;
+    }
+    let fixed = |i: &usize| {
+        let wall = scene.walls.get(usize::from(walls.group[*i]));
+        wall.is_some_and(|w| !w.rigid)
+    };
+    let fixed = (0..walls.len()).filter(fixed);
+    let fixed: Vec<Vector<D>> = fixed.map(|i| walls.position[i]).collect();
+    for (n, gate) in scene.gates.iter().enumerate() {
+        let others = plates[..n].iter().chain(&plates[n + 1..]);
+        let others: Vec<Vector<D>> = others.flat_map(Plate::shut).collect();
+        let standing = Places::new(&[&fixed[..], &others].concat(), dp, sides);
+        let taken = [&walls.position[..], &others, grains].concat();
+        let taken = Places::new(&taken, dp, sides);
+        plates[n].fill_corners(
+            meets(&ends(gate), &corners, dp),
+            |x| standing.has(x, STANDS),
+            |x| !(rings && x[0] <= 0.0) && !taken.has(x, TAKEN),
+        );
+    }
+    plates
 }
 
 /// Points of fixed walls and, at these openings, of plates.
