@@ -120,7 +120,10 @@ impl Numerics {
         (artificial_viscosity, density_diffusion): (f64, f64),
         mut materials: impl Iterator<Item = &'a Material>,
     ) -> u32 {
-        let is_dry = |m: &Material| !m.is_fluid() && !m.is_saturated() && m.bulk_friction == 0.0;
+        let is_dry = |m: &Material| {
+            let sticks = m.bulk_friction == 0.0 && m.viscous.consistency == 0.0;
+            !m.is_fluid() && !m.is_saturated() && sticks
+        };
         let may = scheme == Scheme::Implicit
             && !is_axisymmetric
             && artificial_viscosity == 0.0
