@@ -9,6 +9,8 @@ use crate::solver::{Numerics, Rotation, Scheme, YieldForm};
 pub(crate) const MOST_PARTICLES: f64 = 50e6;
 /// Most cells of the neighbour grid, occupied or not.
 const MOST_CELLS: f64 = 1e9;
+/// Time scale of the gate on density diffusion, over c0/g [1].
+const GATE: f64 = 0.3;
 
 impl Lift<'_> {
     pub(super) fn numerics(&mut self, materials: &[Option<NamedMaterial>]) -> Option<Numerics> {
@@ -36,7 +38,10 @@ impl Lift<'_> {
                 None => self.cap_time(yield_form, sound_speed?),
             },
             density_diffusion: raw.density_diffusion.as_ref()?.value.0,
-            diffusion_gate_time: raw.diffusion_gate_time.as_ref()?.value.0,
+            diffusion_gate_time: match &raw.diffusion_gate_time {
+                Some(given) => given.value.0,
+                None => GATE * self.time_scale(sound_speed?),
+            },
             strain_relaxation_time: raw.strain_relaxation_time.as_ref()?.value.0,
             pair_viscosity_share: match &raw.pair_viscosity_share {
                 Some(given) => given.value.0,
@@ -95,7 +100,7 @@ impl Lift<'_> {
                 &given.place,
                 format!("{asked} acoustic steps"),
                 format!(
-                    "at most {most} here: 1 in axisymmetric scenes and with fluids, saturated grains, bulk friction or artificial viscosity, else 1/density_diffusion"
+                    "at most {most} here: 1 in axisymmetric scenes and with fluids, saturated grains, consistency, bulk friction or artificial viscosity, else 1/density_diffusion"
                 ),
                 "leave acoustic_steps out",
             );
@@ -104,15 +109,19 @@ impl Lift<'_> {
         Some(asked)
     }
 
-    /// A few times the time scale c0/g of the scene; standard gravity stands in where there is none.
-    fn cap_time(&self, form: YieldForm, sound_speed: f64) -> f64 {
+    /// c0/g, ten times sqrt(H/g) where nothing is faster than a fall from H; standard gravity stands in where there is none.
+    fn time_scale(&self, sound_speed: f64) -> f64 {
         let g = self.gravity_size();
-        let g = if g > 0.0 { g } else { 9.806_65 };
+        sound_speed / if g > 0.0 { g } else { 9.806_65 }
+    }
+
+    /// A few times the time scale of the scene.
+    fn cap_time(&self, form: YieldForm, sound_speed: f64) -> f64 {
         let times = match form {
             YieldForm::Exact { .. } => 2.0,
             YieldForm::Capped => 20.0,
         };
-        times * sound_speed / g
+        times * self.time_scale(sound_speed)
     }
 
     /// Neither more particles nor more grid cells than a machine holds.

@@ -21,7 +21,7 @@ table! {
         optional scheme: SchemeWord, default "implicit";
         /// Acoustic Courant number: acoustic step over h/c0; if left out, 0.7, or 0.5 with the schemes paper_a and paper_b.
         optional courant: Ratio, in Range::above_to(0.0, 1.0);
-        /// Acoustic steps to an internal step, where neighbours and walls are slower than 0.03 c0 against each other: pressure and density take so many to one solve of friction (docs/decisions/014-two-acoustic-steps.md). If left out, 2 in planar scenes and in space where all is dry grains without bulk friction, artificial viscosity and a density_diffusion above 0.5; others take 1.
+        /// Acoustic steps to an internal step, where neighbours and walls are slower than 0.03 c0 against each other: pressure and density take so many to one solve of friction (docs/decisions/014-two-acoustic-steps.md). If left out, 2 in planar scenes and in space where all is dry grains without consistency, bulk friction, artificial viscosity and a density_diffusion above 0.5; others take 1.
         optional acoustic_steps: Whole, in Range::within(1.0, 2.0);
         /// Scheme paper_a: the largest yield stress that is expected, tau_0; if left out, tan(static_friction_angle) times the weight of the deepest material.
         optional reference_yield_stress: Pressure, in Range::above(0.0);
@@ -41,18 +41,18 @@ table! {
         optional yield_iterations: Whole, in Range::within(1.0, 100.0), default 1;
         /// Cap of the viscosity: at most cap_time x (cohesion + mu_s x pressure). With a capped yield a plug creeps at up to 1/cap_time, and 20 c0/g is taken if this is left out; with the exact yield it sets how fast the iteration goes, and 2 c0/g is taken.
         optional cap_time: Time, in Range::above(0.0);
-        /// Density diffusion; 0 switches it off.
+        /// Density diffusion; 0 switches it off. Above 0.3 it costs grains friction, those with a consistency first.
         optional density_diffusion: Ratio, in Range::within(0.0, 1.0), default 0.1;
-        /// Time scale that switches density diffusion off where material rests.
-        optional diffusion_gate_time: Time, in Range::from(0.0), default "0.3 s";
+        /// Time scale that switches density diffusion off where material rests: it has all of its strength where the shear rate is above one over this. Left out: 0.3 c0/g, which is 0.3 s where material is 0.1 m high, so that scenes of all sizes are alike.
+        optional diffusion_gate_time: Time, in Range::from(0.0);
         /// Relaxation time of the strain rate in the pressure law; 20 to 200 ms is useful.
         optional strain_relaxation_time: Time, in Range::above(0.0), default "50 ms";
         /// Share of viscous stress carried pair by pair, against zero-energy modes; left out: 0.05, or 0.5 in scenes of Newtonian fluids alone.
         optional pair_viscosity_share: Ratio, in Range::within(0.0, 0.95);
         /// Whose rigid rotation makes no stress at free surfaces.
         optional rotation: RotationWord, default "cohesive";
-        /// Artificial viscosity alpha.
-        optional artificial_viscosity: Ratio, in Range::within(0.0, 10.0), default 0;
+        /// Artificial viscosity alpha; no step is shortened for it.
+        optional artificial_viscosity: Ratio, in Range::within(0.0, 1.0), default 0;
         /// Factor on the shifting of particles towards even spacing; 0 switches it off, 1 is the published strength. Left out: 0, with scheme paper_b 1. With scheme implicit particles of materials with friction are never shifted.
         optional shifting: Ratio, in Range::within(0.0, 1.0);
         /// Relative tolerance of the viscous solve.

@@ -263,3 +263,55 @@ fn sand_at_rest_stays_at_rest() {
     let speed = unit.component.statistics().max_speed;
     assert!(speed < 1e-3 * (9.81_f64 * 0.1).sqrt(), "{speed} m/s");
 }
+
+/// A column of grains without a length or time of their own, and one four times as high: with lengths over H and times over sqrt(H/g)
+/// they are the same, of which rounding knows nothing either, four being a power of two.
+#[test]
+fn columns_of_all_sizes_are_alike() {
+    let front = |size: f64| {
+        let at = |x: f64| x * size;
+        let text = format!(
+            r#"
+name = "column"
+[domain]
+lower = [{}, {}]
+upper = [{}, {}]
+[numerics]
+spacing = {}
+[materials.grains]
+law = "constant_friction"
+friction_angle = "30 deg"
+density = 1600
+[bodies.column]
+material = "grains"
+box = {{ lower = [0, 0], upper = [{}, {}] }}
+[walls.tank]
+polyline = [[0, {}], [0, 0], [{}, 0]]
+[gauges.front]
+kind = "front"
+origin = [0, 0]
+direction = [1, 0]
+[run]
+step = {}
+until = {}
+"#,
+            at(-0.125),
+            at(-0.125),
+            at(1.0),
+            at(0.25),
+            at(1.0 / 128.0),
+            at(0.125),
+            at(0.125),
+            at(0.25),
+            at(1.0),
+            0.03125 * size.sqrt(),
+            0.5 * size.sqrt(),
+        );
+        let mut unit = Unit::new(&sandgate::scene::parse("column", &text).unwrap());
+        unit.run_to(0.5 * size.sqrt());
+        unit.get("gauge.front.front") / size
+    };
+    let (small, large) = (front(1.0), front(4.0));
+    println!("front {small} and {large}");
+    assert!((large / small - 1.0).abs() < 1e-6, "{small} and {large}");
+}
