@@ -107,12 +107,18 @@ pub(super) fn report(scene: &Scene, m: &Measured, threads: usize) -> String {
         scene.run.until,
         (scene.run.until / scene.run.step).ceil(),
     ));
+    let each = if m.particles == 0 {
+        // What flows in makes the cost, and how much of it there was on the way is not known.
+        String::new()
+    } else {
+        let each = m.cpu * 1e6 / (steps * m.particles as f64);
+        format!(" ({each:.2} us a particle and step)")
+    };
     text.push_str(&format!(
-        "cost       about {:.3} s of wall time and {:.3} s of CPU time on {threads} threads ({:.2} us a particle and step), \
-         if the rest is like the beginning\n",
+        "cost       about {:.3} s of wall time and {:.3} s of CPU time on {threads} threads{each}, if the rest is like the \
+         beginning\n",
         m.wall * factor,
         m.cpu * factor,
-        m.cpu * 1e6 / (steps * m.particles.max(1) as f64),
     ));
     text
 }
