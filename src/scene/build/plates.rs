@@ -102,7 +102,7 @@ pub(super) fn plates<const D: usize>(
         plates[n].fill_corners(
             meets(&ends(gate), &corners, dp),
             |x| standing.has(x, STANDS),
-            |x| !(rings && x[0] <= 0.0) && !taken.has(x, TAKEN),
+            |x| !(rings && x[0] <= 0.0 || taken.has(x, TAKEN)),
         );
     }
     plates
