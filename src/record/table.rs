@@ -5,9 +5,10 @@ use super::ending::Ending;
 use super::error::ReadError;
 use super::raw::{RawEntry, RawReader};
 use super::read::{Body, decode};
+use super::standing::Standing;
 use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
 use crate::scene;
-use crate::wire::messages::{Applied, AppliedEvent, Gauge};
+use crate::wire::messages::{Applied, AppliedEvent, Gauge, StepStats};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -66,13 +67,14 @@ impl Table {
     /// # Errors
     /// [`TableError`].
     pub fn read(path: &Path, span: (f64, f64)) -> Result<Self, TableError> {
+        let standing = Standing::of(path)?;
         let mut builder: Option<Builder> = None;
         let mut reader = RawReader::open(path)?;
         for entry in reader.by_ref() {
             match (entry?, &mut builder) {
                 (RawEntry::Attachment { name, data, .. }, none @ None) if name == "scene.toml" => {
                     let scene = scene::parse("scene.toml", &String::from_utf8_lossy(&data))?;
-                    *none = Some(Builder::new(scene, span));
+                    *none = Some(Builder::new(scene, span, &standing));
                 }
                 (RawEntry::Attachment { name, data, .. }, Some(builder))
                     if name == "start.state" =>
@@ -110,7 +112,8 @@ impl Table {
     }
 }
 
-struct Builder {
+struct Builder<'a> {
+    standing: &'a Standing,
     scene: scene::Scene,
     table: Table,
     /// Columns of a variable: one, or one each element.
@@ -119,13 +122,16 @@ struct Builder {
     ranges: Vec<Option<(f64, f64)>>,
     /// The row being filled.
     row: Vec<f64>,
-    /// As it was when states were saved, by their checksums.
-    saved: HashMap<Vec<u8>, Vec<f64>>,
+    /// Lines of figures and SAVEs so far.
+    lines: usize,
+    saves: usize,
+    /// The row as it was when states were saved to which the log comes back, and how often it still does, by checksum.
+    saved: HashMap<Vec<u8>, (Vec<f64>, usize)>,
     span: (f64, f64),
 }
 
-impl Builder {
-    fn new(scene: scene::Scene, span: (f64, f64)) -> Self {
+impl<'a> Builder<'a> {
+    fn new(scene: scene::Scene, span: (f64, f64), standing: &'a Standing) -> Self {
         let variables = VariableTable::of(&scene);
         let mut places: HashMap<String, Vec<usize>> = HashMap::new();
         let (mut columns, mut row, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
@@ -159,6 +165,7 @@ impl Builder {
             });
         }
         Self {
+            standing,
             scene,
             table: Table {
                 columns,
@@ -166,6 +173,8 @@ impl Builder {
             },
             places,
             ranges,
+            lines: 0,
+            saves: 0,
             saved: HashMap::new(),
             row: row.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect(),
             span,
@@ -200,14 +209,21 @@ impl Builder {
             Body::Applied(applied) => self.inputs(&applied),
             Body::Gauge(gauge) => self.gauge(&gauge),
             // Comes after all outputs of its point.
-            Body::Stats(stats) if (self.span.0..=self.span.1).contains(&stats.time) => {
-                self.table.time.push(stats.time);
-                self.table.step.push(stats.step);
-                for (column, value) in self.table.columns.iter_mut().zip(&self.row) {
-                    column.values.push(*value);
-                }
-            }
+            Body::Stats(stats) => self.row(&stats),
             _ => {}
+        }
+    }
+
+    fn row(&mut self, stats: &StepStats) {
+        let stands = self.standing.row(self.lines);
+        self.lines += 1;
+        if !(stands && (self.span.0..=self.span.1).contains(&stats.time)) {
+            return;
+        }
+        self.table.time.push(stats.time);
+        self.table.step.push(stats.step);
+        for (column, value) in self.table.columns.iter_mut().zip(&self.row) {
+            column.values.push(*value);
         }
     }
 
@@ -216,24 +232,31 @@ impl Builder {
         for input in applied.inputs.iter().chain(moments).filter(|i| !i.slope) {
             self.put(&input.name, &input.values);
         }
-        if applied.event() == AppliedEvent::Save {
-            self.saved.insert(applied.state.clone(), self.row.clone());
-        }
-        if applied.event() == AppliedEvent::Restore
-            && let Some(row) = self.saved.get(&applied.state)
-        {
-            self.row.clone_from(row);
-            self.take_back(applied.step);
+        match applied.event() {
+            AppliedEvent::Save => self.save(&applied.state),
+            AppliedEvent::Restore => self.restore(&applied.state),
+            _ => {}
         }
     }
 
-    /// Leaves out the rows from this communication step on; its own comes again.
-    fn take_back(&mut self, step: u64) {
-        let kept = self.table.step.partition_point(|own| *own < step);
-        self.table.step.truncate(kept);
-        self.table.time.truncate(kept);
-        for column in &mut self.table.columns {
-            column.values.truncate(kept);
+    fn save(&mut self, state: &[u8]) {
+        let returns = self.standing.returns(self.saves);
+        self.saves += 1;
+        if returns > 0 {
+            self.saved
+                .insert(state.to_vec(), (self.row.clone(), returns));
+        }
+    }
+
+    /// Outputs of the state come again; its inputs do not.
+    fn restore(&mut self, state: &[u8]) {
+        let Some((row, returns)) = self.saved.get_mut(state) else {
+            return;
+        };
+        self.row.clone_from(row);
+        *returns -= 1;
+        if *returns == 0 {
+            self.saved.remove(state);
         }
     }
 
