@@ -178,7 +178,9 @@ impl Run {
             && let Some(hash) = value("state_hash")
         {
             let mode = value("mode").map_or("", String::as_str);
-            if mode == "Terminated" && self.component.mode() == Mode::Stepping {
+            // A file may begin from the state of a failed component, which can be terminated, too.
+            let ends = matches!(self.component.mode(), Mode::Stepping | Mode::Failed);
+            if mode == "Terminated" && ends {
                 self.component.terminate()?;
             }
             // A step that failed left a state that no recorded call leads to; logs of old have its hash all the same.

@@ -335,6 +335,31 @@ fn a_log_with_a_failed_step_runs_again_up_to_it() {
     assert_eq!(done.steps, steps);
 }
 
+/// The file that a log goes on in when its component is brought to the state of one that failed elsewhere.
+#[test]
+fn a_log_that_begins_from_a_failed_state_and_is_terminated_runs_again() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let scene = sandgate::scene::load(&python::root().join("tests/scenes/no_floor.toml"));
+    let scene = scene.unwrap_or_else(|why| panic!("{why}"));
+    let mut failed = Component::new(&scene).unwrap();
+    failed.initialize(0.0, None).unwrap();
+    while failed.do_step(failed.time(), scene.run.step).is_ok() {}
+    for ends in [true, false] {
+        let mut component = Component::new(&scene).unwrap();
+        component.restore(&failed.save().unwrap()).unwrap();
+        let file = folder.path().join(format!("terminated_{ends}.mcap"));
+        let options = RecordOptions::of(&component);
+        let recorder = Recorder::create(&file, &component, options).unwrap();
+        if ends {
+            component.terminate().unwrap();
+        }
+        recorder.finish(&component, "done").unwrap();
+        let done = redrive(&file, &RedriveOptions::default(), &mut |_| {}).unwrap();
+        assert_eq!(done.difference, None);
+        assert_eq!(done.same_state, ends.then_some(true));
+    }
+}
+
 #[test]
 fn a_new_run_of_a_log_can_be_logged_with_more_particles() {
     let folder = temp_dir::TempDir::new().unwrap();
