@@ -223,8 +223,10 @@ impl Instance {
     /// Slopes of inputs for the next step.
     pub(crate) fn set_slopes(&mut self, references: &[u32], slopes: &[f64]) -> Result<(), Fault> {
         self.journal.asks_set(&self.component, references, slopes);
-        self.component.set_input_derivatives(references, slopes)?;
-        self.journal.slopes(&self.component, references, slopes);
+        // No slope has no sign: one of -0 would stand in states, and not among the slopes that a log begins with.
+        let slopes: Vec<f64> = slopes.iter().map(|slope| slope + 0.0).collect();
+        self.component.set_input_derivatives(references, &slopes)?;
+        self.journal.slopes(&self.component, references, &slopes);
         Ok(())
     }
 

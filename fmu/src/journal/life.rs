@@ -49,7 +49,10 @@ impl Journal {
         for row in settable {
             let mut now = vec![0.0; row.len()];
             component.get(&[row.reference], &mut now)?;
-            if row.start != Start::Exact(now.clone()) {
+            // By bits: a zero of the other sign is another value.
+            let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            let starts = matches!(&row.start, Start::Exact(start) if bits(start) == bits(&now));
+            if !starts {
                 self.each(|one, source| one.on_input(component, &[row.reference], &now, source));
             }
         }

@@ -271,7 +271,7 @@ fn a_log_that_starts_at_another_time_runs_again() {
     let folder = temp_dir::TempDir::new().unwrap();
     let scene = sandgate::scene::load(&python::root().join("tests/scenes/small_silo.toml"));
     let scene = scene.unwrap_or_else(|why| panic!("{why}"));
-    for start in [2.5, -1.0, 1e9] {
+    for start in [2.5, -1.0, 1e9, -0.0] {
         let mut component = Component::new(&scene).unwrap();
         component.enter_initialization(start, None).unwrap();
         let file = folder.path().join(format!("{start}.mcap"));
