@@ -19,20 +19,21 @@ impl Instance {
         self.journal.asks(&self.component, &Asked::Nothing);
         let bytes = self.component.save()?;
         fits(bytes.len())?;
-        self.journal.saved(&self.component, &bytes)?;
+        self.journal.saved(&self.component, &bytes);
         Ok(SavedState {
             bytes,
             experiment: Some(self.experiment),
         })
     }
 
-    /// Goes to a saved state; a refused one changes nothing.
+    /// Goes to a saved state; a refused one changes nothing, nor does one behind a required log that has failed.
     pub(crate) fn restore(
         &mut self,
         bytes: &[u8],
         experiment: Option<Experiment>,
     ) -> Result<(), Fault> {
         self.journal.asks(&self.component, &Asked::Nothing);
+        self.journal.goes_on()?;
         if self.broken.is_some() {
             self.component.restore_anew(bytes)?;
             self.broken = None;
