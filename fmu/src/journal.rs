@@ -196,14 +196,6 @@ impl Journal {
         }
         let state = saved_checksum(bytes).unwrap_or_default();
         self.each(|one, source| one.on_restore(component, &state, source));
-        if component.mode() == Mode::Stepping
-            && let Err(fault) = self.begin_late(component)
-        {
-            if component.host_settings().log_required {
-                return Err(fault);
-            }
-            self.complaint = Some(fault.to_string());
-        }
         self.watch()
     }
 

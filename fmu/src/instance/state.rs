@@ -26,7 +26,8 @@ impl Instance {
         })
     }
 
-    /// Goes to a saved state; a refused one changes nothing, nor does one behind a required log that has failed.
+    /// Goes to a saved state; a refused one changes nothing. A required log that begins there and cannot be written is a
+    /// refusal, too.
     pub(crate) fn restore(
         &mut self,
         bytes: &[u8],
@@ -34,17 +35,34 @@ impl Instance {
     ) -> Result<(), Fault> {
         self.journal.asks(&self.component, &Asked::Nothing);
         self.journal.goes_on()?;
-        if self.broken.is_some() {
-            self.component.restore_anew(bytes)?;
-            self.broken = None;
-        } else {
-            self.component.restore(bytes)?;
+        let sound = self.broken.is_none();
+        let may_refuse = sound && self.journal.may_refuse(&self.component);
+        let before = match may_refuse {
+            true => Some(self.component.save()?),
+            false => None,
+        };
+        match sound {
+            true => self.component.restore(bytes)?,
+            false => self.component.restore_anew(bytes)?,
         }
+        let begun = match self.journal.begin_late(&self.component) {
+            Ok(begun) => begun,
+            Err(fault) => {
+                // What broke down waits for another state, as it did.
+                if let Some(before) = before {
+                    self.component.restore(&before)?;
+                }
+                return Err(fault);
+            }
+        };
+        self.broken = None;
         if let Some(experiment) = experiment {
             self.experiment = experiment;
         }
         self.event(|| format!("state of t = {} s restored", self.component.time()));
-        self.journal.restored(&self.component, bytes)
+        let told = self.journal.restored(&self.component, bytes);
+        self.journal.adopt(begun);
+        told
     }
 
     /// Bytes as a state, if this instance could go to it: a bad blob is refused here, not when it is set.
