@@ -97,6 +97,8 @@ pub(crate) struct Instance {
     /// Its MCAP log.
     pub(crate) journal: Journal,
     pub(crate) experiment: Experiment,
+    /// Whether the importer gave these times since the instance was made or reset, so that those of a state do not count.
+    pub(crate) told_times: bool,
     /// Status of the last doStep, for fmi2GetStatus.
     pub(crate) last_step: Status,
     /// FMI 3: whom to call during steps.
@@ -121,6 +123,7 @@ impl Instance {
             log,
             journal: Journal::new(None, &scene.name),
             experiment: Experiment::default(),
+            told_times: false,
             last_step: Status::Ok,
             updates: None,
             last_error: CString::default(),

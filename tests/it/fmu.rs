@@ -144,6 +144,7 @@ fn logs_of_fmus_run_again_with_the_same_bits() {
         ("SANDGATE_PROGRAM", env!("CARGO_BIN_EXE_sandgate").as_ref()),
     ];
     pytest("test_fmu_log.py", &environment);
+    pytest("test_fmu_log_states.py", &environment);
 }
 
 /// The library with Zenoh, built together with the program: so both share the build of all crates. (`sandgate fmu --zenoh`

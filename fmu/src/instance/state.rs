@@ -56,7 +56,7 @@ impl Instance {
             }
         };
         self.broken = None;
-        if let Some(experiment) = experiment {
+        if let Some(experiment) = experiment.filter(|_| !self.told_times) {
             self.experiment = experiment;
         }
         self.event(|| format!("state of t = {} s restored", self.component.time()));
