@@ -6,6 +6,7 @@ mod state;
 use std::ffi::CString;
 
 use sandgate::component::{Causality, Component, VariableTable};
+use sandgate::fmi::library::BUILT_FROM;
 use sandgate::fmi::{self, FmiVersion};
 use sandgate::scene::{self, Scene};
 
@@ -149,7 +150,7 @@ impl Instance {
         if token != expected {
             return Err(Fault::border(format!(
                 "instantiation token: found {token}, expected {expected}: modelDescription.xml and library are not \
-                 from the same FMU; pack it again with `sandgate fmu`"
+                 from the same FMU; {BUILT_FROM}pack it again with `sandgate fmu`"
             )));
         }
         instance.event(|| format!("instantiated scene {}", scene.name));
