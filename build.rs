@@ -1,5 +1,7 @@
 //! Puts a hash of everything that can change a result into the program: the sources up to `component`, the manifest and
 //! the lock file. `sandgate validate` keeps finished runs by it, so that a new help text does not compute a study again.
+//!
+//! Another one goes on over `fmi`: by it packing knows a library that describes a scene as the program does.
 
 use std::path::{Path, PathBuf};
 
@@ -20,20 +22,32 @@ const MODULES: [&str; 10] = [
 fn main() {
     let mut files: Vec<PathBuf> = vec!["Cargo.toml".into(), "Cargo.lock".into()];
     for module in MODULES.iter().chain(&["gauge"]) {
-        let path = Path::new("src").join(module);
-        println!("cargo:rerun-if-changed={}", path.display());
-        collect(&path, &mut files);
+        collect_module(module, &mut files);
     }
     println!("cargo:rerun-if-changed=Cargo.toml");
     println!("cargo:rerun-if-changed=Cargo.lock");
-    files.sort();
     let mut hash = FNV_START;
-    for file in &files {
-        mix(&mut hash, file.to_string_lossy().as_bytes());
-        // A packed crate has no lock file: its absence is as good a fact as its content.
-        mix(&mut hash, &std::fs::read(file).unwrap_or_default());
-    }
+    mix_files(&mut hash, files);
     println!("cargo:rustc-env=SANDGATE_SOURCES={hash:016x}");
+    let mut files = Vec::new();
+    collect_module("fmi", &mut files);
+    mix_files(&mut hash, files);
+    println!("cargo:rustc-env=SANDGATE_LIBRARY_SOURCES={hash:016x}");
+}
+
+fn collect_module(name: &str, files: &mut Vec<PathBuf>) {
+    let path = Path::new("src").join(name);
+    println!("cargo:rerun-if-changed={}", path.display());
+    collect(&path, files);
+}
+
+fn mix_files(hash: &mut u64, mut files: Vec<PathBuf>) {
+    files.sort();
+    for file in &files {
+        mix(hash, file.to_string_lossy().as_bytes());
+        // A packed crate has no lock file: its absence is as good a fact as its content.
+        mix(hash, &std::fs::read(file).unwrap_or_default());
+    }
 }
 
 /// Files below a path, or the path itself.

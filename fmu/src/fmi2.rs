@@ -90,6 +90,7 @@ pub(crate) extern "C" fn fmi2SetupExperiment(
         let stop = (stop_defined != 0).then_some(stop);
         i.component.check_times("setup_experiment", start, stop)?;
         i.experiment = Experiment { start, stop };
+        i.told_times = true;
         Ok(())
     })
     .into()

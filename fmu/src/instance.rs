@@ -6,6 +6,7 @@ mod state;
 use std::ffi::CString;
 
 use sandgate::component::{Causality, Component, VariableTable};
+use sandgate::fmi::library::BUILT_FROM;
 use sandgate::fmi::{self, FmiVersion};
 use sandgate::scene::{self, Scene};
 
@@ -97,6 +98,8 @@ pub(crate) struct Instance {
     /// Its MCAP log.
     pub(crate) journal: Journal,
     pub(crate) experiment: Experiment,
+    /// Whether the importer gave these times since the instance was made or reset, so that those of a state do not count.
+    pub(crate) told_times: bool,
     /// Status of the last doStep, for fmi2GetStatus.
     pub(crate) last_step: Status,
     /// FMI 3: whom to call during steps.
@@ -121,6 +124,7 @@ impl Instance {
             log,
             journal: Journal::new(None, &scene.name),
             experiment: Experiment::default(),
+            told_times: false,
             last_step: Status::Ok,
             updates: None,
             last_error: CString::default(),
@@ -146,7 +150,7 @@ impl Instance {
         if token != expected {
             return Err(Fault::border(format!(
                 "instantiation token: found {token}, expected {expected}: modelDescription.xml and library are not \
-                 from the same FMU; pack it again with `sandgate fmu`"
+                 from the same FMU; {BUILT_FROM}pack it again with `sandgate fmu`"
             )));
         }
         instance.event(|| format!("instantiated scene {}", scene.name));
@@ -223,8 +227,10 @@ impl Instance {
     /// Slopes of inputs for the next step.
     pub(crate) fn set_slopes(&mut self, references: &[u32], slopes: &[f64]) -> Result<(), Fault> {
         self.journal.asks_set(&self.component, references, slopes);
-        self.component.set_input_derivatives(references, slopes)?;
-        self.journal.slopes(&self.component, references, slopes);
+        // No slope has no sign: one of -0 would stand in states, and not among the slopes that a log begins with.
+        let slopes: Vec<f64> = slopes.iter().map(|slope| slope + 0.0).collect();
+        self.component.set_input_derivatives(references, &slopes)?;
+        self.journal.slopes(&self.component, references, &slopes);
         Ok(())
     }
 

@@ -121,14 +121,20 @@ impl Journal {
         self.each(|one, source| one.on_moment(component, moment, source));
     }
 
-    /// Before a step: a log that is required and has failed lets nothing go on; set-points are taken.
-    pub(crate) fn before_step(&mut self, component: &mut Component) -> Result<(), Fault> {
-        if let Some(log) = &self.log
-            && log.is_required()
-            && let Some(failure) = log.failure()
-        {
-            return Err(told(RecordError::Required(failure)));
+    /// A log that is required and has failed lets nothing go on, neither by a step nor to another state.
+    pub(crate) fn goes_on(&self) -> Result<(), Fault> {
+        match &self.log {
+            Some(log) if log.is_required() => match log.failure() {
+                Some(failure) => Err(told(RecordError::Required(failure))),
+                None => Ok(()),
+            },
+            _ => Ok(()),
         }
+    }
+
+    /// Before a step: it may not go on; set-points are taken.
+    pub(crate) fn before_step(&mut self, component: &mut Component) -> Result<(), Fault> {
+        self.goes_on()?;
         if let Some(network) = &mut self.network {
             network.apply(
                 component,
@@ -169,12 +175,17 @@ impl Journal {
         self.each(|one, _| one.on_failed_step());
     }
 
-    /// The state was saved.
-    pub(crate) fn saved(&mut self, component: &Component, bytes: &[u8]) -> Result<(), Fault> {
+    /// The state was saved. That needs no log: where a required one fails, the step that follows says so, and the state
+    /// is what can be rescued.
+    pub(crate) fn saved(&mut self, component: &Component, bytes: &[u8]) {
         if let Some(state) = saved_checksum(bytes) {
             self.each(|one, source| one.on_save(component, &state, source));
         }
-        self.watch()
+        if self.goes_on().is_ok()
+            && let Err(fault) = self.watch()
+        {
+            self.complaint = Some(fault.to_string());
+        }
     }
 
     /// The component has gone to a saved state.
@@ -185,14 +196,6 @@ impl Journal {
         }
         let state = saved_checksum(bytes).unwrap_or_default();
         self.each(|one, source| one.on_restore(component, &state, source));
-        if component.mode() == Mode::Stepping
-            && let Err(fault) = self.begin_late(component)
-        {
-            if component.host_settings().log_required {
-                return Err(fault);
-            }
-            self.complaint = Some(fault.to_string());
-        }
         self.watch()
     }
 
@@ -249,7 +252,8 @@ fn listener<'a>(log: &'a mut Option<Recorder>, nobody: &'a mut Unobserved) -> &'
 fn told(error: RecordError) -> Fault {
     match error {
         RecordError::Required(failure) => Fault::Outside(format!(
-            "{failure}; the log is required, so nothing goes on (the parameter log.required = false lets it)"
+            "{failure}; the log is required, so nothing goes on; states can be saved, and after a reset with \
+             another log.path, or with log.required = false, gone on from"
         )),
         other => Fault::Outside(format!("log.path: {other}")),
     }

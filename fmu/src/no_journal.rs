@@ -15,6 +15,10 @@ pub(crate) struct Moment {
     pub(crate) wish: Wish,
 }
 
+/// Nothing that has begun.
+#[derive(Default)]
+pub(crate) struct Begun;
+
 /// No log.
 pub(crate) struct Journal;
 
@@ -88,9 +92,21 @@ impl Journal {
 
     pub(crate) fn failed_step(&mut self) {}
 
-    pub(crate) fn saved(&mut self, _: &Component, _: &[u8]) -> Result<(), Fault> {
+    pub(crate) fn saved(&mut self, _: &Component, _: &[u8]) {}
+
+    pub(crate) fn goes_on(&self) -> Result<(), Fault> {
         Ok(())
     }
+
+    pub(crate) fn may_refuse(&self, _: &Component) -> bool {
+        false
+    }
+
+    pub(crate) fn begin_late(&mut self, _: &Component) -> Result<Begun, Fault> {
+        Ok(Begun)
+    }
+
+    pub(crate) fn adopt(&mut self, _: Begun) {}
 
     pub(crate) fn restored(&mut self, _: &Component, _: &[u8]) -> Result<(), Fault> {
         Ok(())

@@ -13,7 +13,7 @@ pub enum Error {
     Library(String),
     /// The file is not a shared library of this program.
     #[error(
-        "{path} is not Sandgate's shared library: {found}; build it with `cargo build --release -p sandgate-fmu`"
+        "{path} is not this program's shared library: {found}; build it with `cargo build --release -p sandgate-fmu`"
     )]
     WrongLibrary {
         /// The file.

@@ -12,6 +12,14 @@ pub const FILE_NAME: &str = "libsandgate_fmu.so";
 /// with Zenoh.
 pub const WITHOUT_ZENOH: &str = "this library was built without Zenoh; ";
 
+/// What a library says of the sources it was built from, so far as descriptions depend on them. It stands in its bytes: one of
+/// other sources makes another token of the same scene, and would refuse the description that is packed with it.
+pub const BUILT_FROM: &str = concat!(
+    "this library was built from sources ",
+    env!("SANDGATE_LIBRARY_SOURCES"),
+    "; "
+);
+
 /// Which of the shared libraries.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
@@ -84,8 +92,13 @@ pub fn locate(explicit: Option<&Path>, kind: Kind) -> Result<PathBuf, Error> {
 /// A file that cannot be read is refused where it is packed.
 fn lacks_zenoh(library: &Path) -> bool {
     let bytes = std::fs::read(library).unwrap_or_default();
-    let marker = WITHOUT_ZENOH.as_bytes();
-    bytes.windows(marker.len()).any(|part| part == marker)
+    says(&bytes, WITHOUT_ZENOH)
+}
+
+/// Whether a text stands among the bytes of a library.
+pub(super) fn says(library: &[u8], text: &str) -> bool {
+    let text = text.as_bytes();
+    library.windows(text.len()).any(|part| part == text)
 }
 
 /// Builds the library of the source tree at `root` into `target`.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::library::Kind;
+use super::library::{self, Kind};
 use super::reference::{self, Extent, manifest};
 use super::slot::{self, SlotError};
 use super::{Error, FmiVersion, Platform, description, identifier, page::page, terminals};
@@ -152,6 +152,11 @@ fn with_scene(library: &Path, scene: &Scene) -> Result<(Platform, Vec<u8>), Erro
         return Err(wrong(format!("it is no shared library for {known}")));
     };
     match slot::fill(&mut bytes, &scene.source) {
+        Ok(()) if !library::says(&bytes, library::BUILT_FROM) => Err(wrong(
+            "it was built from other sources than this program, so it would refuse the description packed with it; build both \
+             from the same"
+                .to_owned(),
+        )),
         Ok(()) => Ok((platform, bytes)),
         Err(SlotError::TooLong(found)) => Err(Error::SceneTooLong {
             found,

@@ -2,7 +2,8 @@
 
 use std::fmt::{Display, Write};
 
-/// Text with everything that means something in XML escaped; line breaks and other control characters become spaces.
+/// Text with everything that means something in XML escaped; line breaks and other control characters become spaces, as do the
+/// two of the first plane that no document may hold.
 pub(super) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -11,6 +12,7 @@ pub(super) fn escape(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
+            '\u{FFFE}' | '\u{FFFF}' => out.push(' '),
             c if c.is_control() => out.push(' '),
             c => out.push(c),
         }
@@ -102,6 +104,16 @@ mod tests {
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
              <a t=\"&lt;&quot;&amp;&quot;&gt; ü\">\n  <b/>\n</a>\n"
         );
+    }
+
+    /// Production 2 of XML 1.0: `Char`.
+    #[test]
+    fn no_character_that_a_document_may_not_hold_gets_through() {
+        let all: String = ('\0'..=char::MAX).collect();
+        let allowed = |c| matches!(c, '\t' | '\n' | '\r' | ' '..='\u{D7FF}' | '\u{E000}'..='\u{FFFD}' | '\u{10000}'..);
+        let found = escape(&all).chars().find(|c| !allowed(*c));
+        assert_eq!(found, None);
+        assert_eq!(escape("a\u{FFFE}b\u{FFFF}c\u{FFFD}"), "a b c\u{FFFD}");
     }
 
     #[test]

@@ -9,6 +9,12 @@ pub(super) fn same(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
 }
 
+/// Whether a number that stands alone in a message is this one: the log does not have such a number if it is 0, of either
+/// sign. Those of lists are all there, see [`same`].
+pub(super) fn same_alone(logged: f64, own: f64) -> bool {
+    logged.to_bits() == own.to_bits() || (logged == 0.0 && own == 0.0)
+}
+
 /// The first of two lists of numbers that differs, with its bits.
 pub(super) fn differ(logged: &[f64], own: &[f64]) -> String {
     if logged.len() != own.len() {
@@ -65,7 +71,7 @@ pub(super) fn different_figure(logged: &StepStats, own: &StepStats) -> Option<(S
         ]
     };
     let pairs = figures(logged).into_iter().zip(figures(own));
-    let mut different = pairs.filter(|((_, a), (_, b))| a.to_bits() != b.to_bits());
+    let mut different = pairs.filter(|((_, a), (_, b))| !same_alone(*a, *b));
     Some(different.next().map_or_else(
         || {
             (

@@ -10,7 +10,7 @@ mod outcome;
 mod start;
 
 use super::Recorder;
-use super::compare::{differ, different_figure, different_particle, same};
+use super::compare::{differ, different_figure, different_particle, same, same_alone};
 use super::ending::Ending;
 use super::raw::{RawEntry, RawMessage, RawReader};
 use super::read::{Body, decode};
@@ -165,7 +165,7 @@ impl Run {
         } else if logged.validity != own.validity {
             let (then, now) = (logged.validity(), own.validity());
             Some((name, format!("log says {then:?}, computed {now:?}")))
-        } else if logged.time.to_bits() != own.time.to_bits() {
+        } else if !same_alone(logged.time, own.time) {
             Some((name, differ(&[logged.time], &[own.time])))
         } else {
             None
@@ -178,7 +178,9 @@ impl Run {
             && let Some(hash) = value("state_hash")
         {
             let mode = value("mode").map_or("", String::as_str);
-            if mode == "Terminated" && self.component.mode() == Mode::Stepping {
+            // A file may begin from the state of a failed component, which can be terminated, too.
+            let ends = matches!(self.component.mode(), Mode::Stepping | Mode::Failed);
+            if mode == "Terminated" && ends {
                 self.component.terminate()?;
             }
             // A step that failed left a state that no recorded call leads to; logs of old have its hash all the same.

@@ -1,14 +1,15 @@
 //! The scalars of a log side by side: one row a communication point, the columns of the run's `gauges.csv`. Rows of
 //! steps that were taken back are left out.
 
+mod builder;
+
 use super::ending::Ending;
 use super::error::ReadError;
 use super::raw::{RawEntry, RawReader};
-use super::read::{Body, decode};
-use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
+use super::read::decode;
+use super::standing::Standing;
 use crate::scene;
-use crate::wire::messages::{Applied, AppliedEvent, Gauge};
-use std::collections::HashMap;
+use builder::Builder;
 use std::path::{Path, PathBuf};
 
 /// One scalar over time.
@@ -66,13 +67,14 @@ impl Table {
     /// # Errors
     /// [`TableError`].
     pub fn read(path: &Path, span: (f64, f64)) -> Result<Self, TableError> {
+        let standing = Standing::of(path)?;
         let mut builder: Option<Builder> = None;
         let mut reader = RawReader::open(path)?;
         for entry in reader.by_ref() {
             match (entry?, &mut builder) {
                 (RawEntry::Attachment { name, data, .. }, none @ None) if name == "scene.toml" => {
                     let scene = scene::parse("scene.toml", &String::from_utf8_lossy(&data))?;
-                    *none = Some(Builder::new(scene, span));
+                    *none = Some(Builder::new(scene, span, &standing));
                 }
                 (RawEntry::Attachment { name, data, .. }, Some(builder))
                     if name == "start.state" =>
@@ -92,7 +94,7 @@ impl Table {
             }
         }
         let mut table = match builder {
-            Some(builder) => builder.table,
+            Some(builder) => builder.finish(),
             None => {
                 return Err(TableError::NoScene {
                     path: path.to_owned(),
@@ -107,153 +109,5 @@ impl Table {
     #[must_use]
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.name == name)
-    }
-}
-
-struct Builder {
-    scene: scene::Scene,
-    table: Table,
-    /// Columns of a variable: one, or one each element.
-    places: HashMap<String, Vec<usize>>,
-    /// Of each column.
-    ranges: Vec<Option<(f64, f64)>>,
-    /// The row being filled.
-    row: Vec<f64>,
-    /// As it was when states were saved, by their checksums.
-    saved: HashMap<Vec<u8>, Vec<f64>>,
-    span: (f64, f64),
-}
-
-impl Builder {
-    fn new(scene: scene::Scene, span: (f64, f64)) -> Self {
-        let variables = VariableTable::of(&scene);
-        let mut places: HashMap<String, Vec<usize>> = HashMap::new();
-        let (mut columns, mut row, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
-        let scalars = variables
-            .rows()
-            .iter()
-            .filter(|v| matches!(v.causality, Causality::Input | Causality::Output))
-            .filter(|v| v.shape.is_empty());
-        for variable in scalars {
-            let own = match variable.element_of {
-                None => Some(variable),
-                Some((array, _)) => variables.by_reference(array),
-            };
-            if let Some(own) = own {
-                let list = places.entry(own.name.clone()).or_default();
-                list.push(columns.len());
-            }
-            row.push(match &variable.start {
-                Start::Exact(values) => values.first().copied(),
-                Start::Empty | Start::Calculated => None,
-            });
-            ranges.push(variable.range);
-            columns.push(Column {
-                name: variable.name.clone(),
-                unit: variable.unit.to_owned(),
-                description: variable.description.clone(),
-                is_input: variable.causality == Causality::Input,
-                is_flag: variable.kind == ValueKind::Boolean
-                    || variable.name.ends_with(".validity"),
-                values: Vec::new(),
-            });
-        }
-        Self {
-            scene,
-            table: Table {
-                columns,
-                ..Table::default()
-            },
-            places,
-            ranges,
-            saved: HashMap::new(),
-            row: row.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect(),
-            span,
-        }
-    }
-
-    /// Inputs are those of a saved state. One that does not fit leaves them as nobody knows them.
-    fn begin_at(&mut self, state: &[u8]) {
-        let component = Component::new(&self.scene).and_then(|mut component| {
-            component.restore(state)?;
-            Ok(component)
-        });
-        for (column, value) in self.table.columns.iter().zip(&mut self.row) {
-            if !column.is_input {
-                continue;
-            }
-            *value = f64::NAN;
-            if let Ok(component) = &component
-                && let Some(variable) = component.variables().by_name(&column.name)
-            {
-                let mut own = [f64::NAN];
-                // Refused only for arrays, which a column is not.
-                if component.get(&[variable.reference], &mut own).is_ok() {
-                    *value = own[0];
-                }
-            }
-        }
-    }
-
-    fn add(&mut self, body: Body) {
-        match body {
-            Body::Applied(applied) => self.inputs(&applied),
-            Body::Gauge(gauge) => self.gauge(&gauge),
-            // Comes after all outputs of its point.
-            Body::Stats(stats) if (self.span.0..=self.span.1).contains(&stats.time) => {
-                self.table.time.push(stats.time);
-                self.table.step.push(stats.step);
-                for (column, value) in self.table.columns.iter_mut().zip(&self.row) {
-                    column.values.push(*value);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    fn inputs(&mut self, applied: &Applied) {
-        let moments = applied.moments.iter().flat_map(|moment| &moment.inputs);
-        for input in applied.inputs.iter().chain(moments).filter(|i| !i.slope) {
-            self.put(&input.name, &input.values);
-        }
-        if applied.event() == AppliedEvent::Save {
-            self.saved.insert(applied.state.clone(), self.row.clone());
-        }
-        if applied.event() == AppliedEvent::Restore
-            && let Some(row) = self.saved.get(&applied.state)
-        {
-            self.row.clone_from(row);
-            self.take_back(applied.step);
-        }
-    }
-
-    /// Leaves out the rows from this communication step on; its own comes again.
-    fn take_back(&mut self, step: u64) {
-        let kept = self.table.step.partition_point(|own| *own < step);
-        self.table.step.truncate(kept);
-        self.table.time.truncate(kept);
-        for column in &mut self.table.columns {
-            column.values.truncate(kept);
-        }
-    }
-
-    fn gauge(&mut self, gauge: &Gauge) {
-        self.put(&gauge.name, &gauge.values);
-        if let Some((device, _)) = gauge.name.rsplit_once('.') {
-            self.put(&format!("{device}.validity"), &[f64::from(gauge.validity)]);
-        }
-    }
-
-    fn put(&mut self, name: &str, values: &[f64]) {
-        let places = self.places.get(name).map_or(&[][..], Vec::as_slice);
-        for (&place, &value) in places.iter().zip(values) {
-            // The log has what was asked for. What was taken and lies out of the range was clamped.
-            self.row[place] = match self.ranges[place] {
-                Some((least, most)) if self.table.columns[place].is_input => {
-                    value.clamp(least, most)
-                }
-                _ => value,
-            };
-        }
     }
 }

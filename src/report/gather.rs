@@ -3,9 +3,9 @@
 
 use super::ReportError;
 use super::pack::{Cloud, PACKED, Scale};
-use super::standing::Standing;
+use super::shots::Shot;
 use crate::component::MassLedger;
-use crate::record::{Body, Ending, Entry, LogReader, Survey, Table};
+use crate::record::{Body, Ending, Entry, LogReader, Standing, Survey, Table};
 use crate::scene::{self, Scene};
 use crate::wire::foxglove::{FrameTransform, Pose, SceneEntity, SceneUpdate};
 use crate::wire::messages::StepStats;
@@ -25,6 +25,9 @@ pub(super) struct Gathered {
     survey: Survey,
     table: Table,
     standing: Standing,
+    /// Figures that stand.
+    stats: Vec<StepStats>,
+    shots: Vec<Shot>,
     /// Lines of figures in the log, those taken back among them: the account of mass holds on each.
     lines_checked: usize,
     mass_error: f64,
@@ -41,7 +44,9 @@ impl Gathered {
         let mut gathered = Self {
             survey: Survey::of(log)?,
             table: Table::read(log, (f64::NEG_INFINITY, f64::INFINITY))?,
-            standing: Standing::default(),
+            standing: Standing::of(log)?,
+            stats: Vec::new(),
+            shots: Vec::new(),
             lines_checked: 0,
             mass_error: 0.0,
             lines: Vec::new(),
@@ -53,7 +58,7 @@ impl Gathered {
         };
         gathered.first_reading(log)?;
         // Base64 makes four bytes of three.
-        let shots = gathered.standing.shots.iter();
+        let shots = gathered.shots.iter();
         let bytes: usize = shots.map(|shot| PACKED * shot.particles * 4 / 3).sum();
         let every = bytes.div_ceil(most_bytes.max(1)).max(1);
         gathered.second_reading(log, every)?;
@@ -62,15 +67,15 @@ impl Gathered {
 
     /// Everything but the particles themselves.
     fn first_reading(&mut self, log: &Path) -> Result<(), ReportError> {
+        let mut clouds = 0;
         for entry in LogReader::open(log)? {
             match entry? {
                 Entry::Attachment { name, data, .. } if name == "scene.toml" => {
                     // Table::read refused what cannot be read.
                     self.scene = scene::parse("scene.toml", &String::from_utf8_lossy(&data)).ok();
                 }
-                Entry::Message { body, log_time, .. } => match body {
+                Entry::Message { body, .. } => match body {
                     Body::Stats(stats) => self.add_stats(stats),
-                    Body::Applied(applied) => self.standing.add_applied(log_time, &applied),
                     Body::Scene(update) => self.drawn = update,
                     Body::Log(_) if self.lines.len() >= MOST_LINES => self.lines_left_out += 1,
                     Body::Log(line) => {
@@ -82,14 +87,17 @@ impl Gathered {
                         }));
                     }
                     Body::Particles(cloud) => {
-                        self.standing.add_cloud(log_time, Cloud::of(&cloud));
+                        if self.standing.snapshot(clouds) {
+                            self.shots.push(Shot::of(clouds, &cloud));
+                        }
+                        clouds += 1;
                     }
                     _ => {}
                 },
                 _ => {}
             }
         }
-        for shot in &self.standing.shots {
+        for shot in &self.shots {
             self.scale.extend(&shot.scale);
         }
         self.include_solids();
@@ -97,13 +105,16 @@ impl Gathered {
     }
 
     fn add_stats(&mut self, stats: StepStats) {
+        let stands = self.standing.row(self.lines_checked);
         self.lines_checked += 1;
         let error = ledger(&stats).error();
         if self.mass_error == 0.0 && error != 0.0 {
             // NaN, which is an error as well, would become null.
             self.mass_error = if error.is_nan() { f64::MAX } else { error };
         }
-        self.standing.stats.push(stats);
+        if stands {
+            self.stats.push(stats);
+        }
     }
 
     /// The picture has room for the corners of walls that are bounded, and a bit more.
@@ -143,7 +154,7 @@ impl Gathered {
     fn second_reading(&mut self, log: &Path, every: usize) -> Result<(), ReportError> {
         let mut frames = Frames::new();
         let last = self.snapshots_in_log().saturating_sub(1);
-        let shots = self.standing.shots.iter().enumerate();
+        let shots = self.shots.iter().enumerate();
         let mut shown = shots
             .filter(|(k, _)| k.is_multiple_of(every) || *k == last)
             .map(|(_, shot)| shot.number)
@@ -179,7 +190,7 @@ impl Gathered {
 
     /// Snapshots of the log that were not taken back.
     pub(super) fn snapshots_in_log(&self) -> usize {
-        self.standing.shots.len()
+        self.shots.len()
     }
 
     pub(super) fn ending(&self) -> &Ending {
@@ -214,7 +225,7 @@ impl Gathered {
         let run = survey.metadata("run").cloned().unwrap_or_default();
         let deterministic = run.get("deterministic").is_some_and(|d| d == "true");
         let mut bound_by: BTreeMap<&str, u64> = BTreeMap::new();
-        let all = self.standing.stats.iter();
+        let all = self.stats.iter();
         for stats in all.filter(|s| !s.bound_by.is_empty()) {
             *bound_by.entry(&stats.bound_by).or_default() += 1;
         }
@@ -288,7 +299,7 @@ impl Gathered {
     fn stats_columns(&self) -> Value {
         let mut columns = Map::new();
         let mut add = |name: &str, of: &dyn Fn(&StepStats) -> f64| {
-            let values: Vec<f64> = self.shown(&self.standing.stats).map(of).collect();
+            let values: Vec<f64> = self.shown(&self.stats).map(of).collect();
             columns.insert(name.to_owned(), values.into());
         };
         add("substeps", &|s| f64::from(s.substeps));

@@ -1,13 +1,13 @@
 //! A log as one page for a browser: gauges and inputs over time, account of mass, figures of the solver, validity, and
 //! the particles with a time slider. The page holds everything and asks no network.
 //!
-//! Data flow: [`record`](crate::record) reads the log, `gather` keeps what the page shows, `standing` leaves out
-//! what was taken back, `pack` makes snapshots small, and this file puts data, style and scripts (`page/`) into one text.
+//! Data flow: [`record`](crate::record) reads the log, `gather` keeps what the page shows but for
+//! what was taken back, `shots` knows its snapshots, `pack` makes snapshots small, and this file puts data, style and scripts (`page/`) into one text.
 //! Knows no terminal and runs nothing.
 
 mod gather;
 mod pack;
-mod standing;
+mod shots;
 #[cfg(test)]
 mod tests;
 

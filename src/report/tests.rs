@@ -67,3 +67,74 @@ fn what_an_importer_took_back_is_on_no_curve_and_in_no_picture() {
     assert_eq!(data["lines_checked"], 8);
     assert_eq!(data["mass_error"], 0.0);
 }
+
+/// Five steps, five more and two; a run that looks elsewhere goes back to the fifth after the tenth, tries three other steps, and
+/// goes forth to the tenth again.
+fn run(log: &std::path::Path, elsewhere: bool) {
+    let text = include_str!("../../tests/scenes/small_silo.toml");
+    let scene = scene::parse("small_silo.toml", text).unwrap();
+    let mut component = Component::new(&scene).unwrap();
+    let options = RecordOptions {
+        particles_every: 0.005,
+        ..RecordOptions::of(&component)
+    };
+    let mut recorder = Recorder::create(log, &component, options).unwrap();
+    component.initialize(0.0, None).unwrap();
+    recorder
+        .record_initialization(&component, 0.0, None, "test")
+        .unwrap();
+    let gate = component.variables().by_name("gate.main.opening").unwrap();
+    let gate = [gate.reference];
+    let steps = |component: &mut Component, recorder: &mut Recorder, count, opening: f64| {
+        for _ in 0..count {
+            component.set(&gate, &[opening]).unwrap();
+            recorder.record_inputs(component, &gate, &[opening], "test");
+            let t = component.time();
+            let report = component.do_step(t, 0.005).unwrap();
+            recorder
+                .record_step(component, &report, t, 0.005, "test")
+                .unwrap();
+        }
+    };
+    let save = |component: &Component, recorder: &mut Recorder| {
+        let state = component.save().unwrap();
+        let sum = saved_checksum(&state).unwrap();
+        recorder.record_save(component, &sum, "test").unwrap();
+        (state, sum)
+    };
+    steps(&mut component, &mut recorder, 5, 0.25);
+    let early = save(&component, &mut recorder);
+    steps(&mut component, &mut recorder, 5, 0.5);
+    let late = save(&component, &mut recorder);
+    if elsewhere {
+        for ((state, sum), tried) in [(early, 3), (late, 0)] {
+            component.restore(&state).unwrap();
+            recorder.record_restore(&component, &sum, "test").unwrap();
+            steps(&mut component, &mut recorder, tried, 1.0);
+        }
+    }
+    steps(&mut component, &mut recorder, 2, 0.75);
+    recorder.finish(&component, "finished").unwrap();
+}
+
+#[test]
+fn the_page_of_a_run_that_went_back_and_forth_is_that_of_one_that_did_not() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let [straight, back] = [false, true].map(|elsewhere| {
+        let log = folder.path().join(format!("{elsewhere}.mcap"));
+        run(&log, elsewhere);
+        Gathered::read(&log, 1_000_000).unwrap().json()
+    });
+    assert_eq!(straight["time"].as_array().unwrap().len(), 13);
+    for part in [
+        "time",
+        "step",
+        "columns",
+        "stats",
+        "bound_by",
+        "snapshots",
+        "scale",
+    ] {
+        assert_eq!(straight[part], back[part], "{part}");
+    }
+}

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use sandgate::fmi::library::Kind;
+use sandgate::fmi::library::{BUILT_FROM, Kind};
 use sandgate::fmi::{self, Extent, FmiVersion, Packing, Platform, cross, slot};
 use sandgate::scene;
 
@@ -27,7 +27,7 @@ fn entries(archive: &Path) -> Vec<String> {
     text.lines().map(str::to_owned).collect()
 }
 
-/// As much of a Windows library as packing looks at: its header and a scene slot.
+/// As much of a Windows library as packing looks at: its header, a scene slot, and what it was built from.
 fn imitation(folder: &Path) -> PathBuf {
     let mut bytes = b"MZ".to_vec();
     bytes.resize(128, 0);
@@ -35,6 +35,7 @@ fn imitation(folder: &Path) -> PathBuf {
     bytes[64..70].copy_from_slice(b"PE\0\0\x64\x86");
     bytes[64 + 23] = 0x20;
     bytes.extend(slot::empty());
+    bytes.extend(BUILT_FROM.as_bytes());
     let path = folder.join("imitation.dll");
     fs::write(&path, bytes).expect("the scratch folder is writable");
     path

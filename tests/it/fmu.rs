@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use sandgate::fmi::library::Kind;
+use sandgate::fmi::library::{BUILT_FROM, Kind};
 use sandgate::fmi::{self, Extent, FmiVersion, Packing};
 use sandgate::scene;
 
@@ -144,6 +144,7 @@ fn logs_of_fmus_run_again_with_the_same_bits() {
         ("SANDGATE_PROGRAM", env!("CARGO_BIN_EXE_sandgate").as_ref()),
     ];
     pytest("test_fmu_log.py", &environment);
+    pytest("test_fmu_log_states.py", &environment);
 }
 
 /// The library with Zenoh, built together with the program: so both share the build of all crates. (`sandgate fmu --zenoh`
@@ -266,6 +267,22 @@ fn packing_refuses_what_it_cannot_pack() {
     assert!(refusal(&scene, program, &out).contains("found 0 scene slots, a library has 1"));
     assert!(refusal(&scene, &folder.join("nowhere"), &out).contains("cannot read"));
     assert!(refusal(&scene, library(), &folder.join("no/folder.fmu")).contains("cannot write"));
+    // One of other sources, of the same version: its hash is another.
+    let other = folder.join("other.so");
+    let (mut bytes, text) = (
+        fs::read(library()).expect("it was built"),
+        BUILT_FROM.as_bytes(),
+    );
+    let places: Vec<usize> = (0..bytes.len() - text.len())
+        .filter(|&at| bytes[at..].starts_with(text))
+        .collect();
+    assert!(!places.is_empty());
+    for at in places {
+        let digit = &mut bytes[at + text.len() - 3];
+        *digit = if *digit == b'0' { b'1' } else { b'0' };
+    }
+    fs::write(&other, bytes).expect("the scratch folder is writable");
+    assert!(refusal(&scene, &other, &out).contains("built from other sources than this program"));
     let mut long = scene;
     long.source += &format!("\n# {}", "x".repeat(fmi::slot::CAPACITY));
     assert!(refusal(&long, library(), &out).contains("an FMU holds up to 262144"));

@@ -1,6 +1,7 @@
 //! What `sandgate log` does with logs: looks into them, runs them again, recovers, exports and replays them.
 
 mod files;
+mod kept;
 mod recovered;
 mod redriven;
 mod told;

@@ -10,7 +10,7 @@ use crate::instance::Experiment;
 pub(crate) struct SavedState {
     /// As `Component::save` gives them.
     pub(crate) bytes: Vec<u8>,
-    /// FMI 2: what setupExperiment said; `None` for a state that came as bytes.
+    /// FMI 2: what setupExperiment said, for an instance that was told no times; `None` for a state that came as bytes.
     pub(crate) experiment: Option<Experiment>,
 }
 

@@ -123,6 +123,7 @@ impl Instance {
         self.journal.reply(&self.component, Ok(()));
         self.journal.end("reset");
         self.experiment = Experiment::default();
+        self.told_times = false;
         self.last_step = Status::Ok;
         self.event(|| "reset".to_owned());
         Ok(())

@@ -19,31 +19,50 @@ impl Instance {
         self.journal.asks(&self.component, &Asked::Nothing);
         let bytes = self.component.save()?;
         fits(bytes.len())?;
-        self.journal.saved(&self.component, &bytes)?;
+        self.journal.saved(&self.component, &bytes);
         Ok(SavedState {
             bytes,
             experiment: Some(self.experiment),
         })
     }
 
-    /// Goes to a saved state; a refused one changes nothing.
+    /// Goes to a saved state; a refused one changes nothing. A required log that begins there and cannot be written is a
+    /// refusal, too.
     pub(crate) fn restore(
         &mut self,
         bytes: &[u8],
         experiment: Option<Experiment>,
     ) -> Result<(), Fault> {
         self.journal.asks(&self.component, &Asked::Nothing);
-        if self.broken.is_some() {
-            self.component.restore_anew(bytes)?;
-            self.broken = None;
-        } else {
-            self.component.restore(bytes)?;
+        self.journal.goes_on()?;
+        let sound = self.broken.is_none();
+        let may_refuse = sound && self.journal.may_refuse(&self.component);
+        let before = match may_refuse {
+            true => Some(self.component.save()?),
+            false => None,
+        };
+        match sound {
+            true => self.component.restore(bytes)?,
+            false => self.component.restore_anew(bytes)?,
         }
-        if let Some(experiment) = experiment {
+        let begun = match self.journal.begin_late(&self.component) {
+            Ok(begun) => begun,
+            Err(fault) => {
+                // What broke down waits for another state, as it did.
+                if let Some(before) = before {
+                    self.component.restore(&before)?;
+                }
+                return Err(fault);
+            }
+        };
+        self.broken = None;
+        if let Some(experiment) = experiment.filter(|_| !self.told_times) {
             self.experiment = experiment;
         }
         self.event(|| format!("state of t = {} s restored", self.component.time()));
-        self.journal.restored(&self.component, bytes)
+        let told = self.journal.restored(&self.component, bytes);
+        self.journal.adopt(begun);
+        told
     }
 
     /// Bytes as a state, if this instance could go to it: a bad blob is refused here, not when it is set.

@@ -1,6 +1,6 @@
 //! How the log and the publications of an instance begin, and how they end.
 
-use sandgate::component::{Causality, Component, HostSettings, Start, ValueKind};
+use sandgate::component::{Causality, Component, HostSettings, Mode, Start, ValueKind};
 use sandgate::fmi;
 use sandgate::record::{RecordOptions, Recorder};
 use sandgate::wire::Unobserved;
@@ -9,6 +9,13 @@ use sandgate::wire::messages::AppliedEvent;
 use super::network::Network;
 use super::{Journal, listener, told};
 use crate::fault::Fault;
+
+/// A log and publications that have begun and belong to no component yet.
+#[derive(Default)]
+pub(crate) struct Begun {
+    log: Option<Recorder>,
+    network: Option<Network>,
+}
 
 impl Journal {
     /// Initialisation is about to end, at `start` [s]: begins the log and opens the network, if there shall be any. Gives
@@ -24,7 +31,8 @@ impl Journal {
             return Ok(false);
         }
         if publishes {
-            self.connect(component)?;
+            let network = Some(self.connect(component)?);
+            self.adopt(Begun { log: None, network });
         }
         if logs {
             match self.create(component, ("start", start)) {
@@ -49,7 +57,10 @@ impl Journal {
         for row in settable {
             let mut now = vec![0.0; row.len()];
             component.get(&[row.reference], &mut now)?;
-            if row.start != Start::Exact(now.clone()) {
+            // By bits: a zero of the other sign is another value.
+            let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            let starts = matches!(&row.start, Start::Exact(start) if bits(start) == bits(&now));
+            if !starts {
                 self.each(|one, source| one.on_input(component, &[row.reference], &now, source));
             }
         }
@@ -59,17 +70,14 @@ impl Journal {
         Ok(())
     }
 
-    fn connect(&mut self, component: &Component) -> Result<(), Fault> {
+    fn connect(&self, component: &Component) -> Result<Network, Fault> {
         let name = match self.instance.as_str() {
             "" => component.scene().name.as_str(),
             own => own,
         };
         let text = &component.host_settings().zenoh_config;
-        let network = Network::open(component, text, name)
-            .map_err(|why| Fault::Outside(format!("zenoh.config: {why}")))?;
-        self.event = Some(network.announcement());
-        self.network = Some(network);
-        Ok(())
+        Network::open(component, text, name)
+            .map_err(|why| Fault::Outside(format!("zenoh.config: {why}")))
     }
 
     fn create(
@@ -128,21 +136,61 @@ impl Journal {
         }
     }
 
-    /// An instance that was not initialised here but went to a state: what its parameters ask for begins now.
-    pub(super) fn begin_late(&mut self, component: &Component) -> Result<(), Fault> {
+    /// Whether a state may be refused because of what begins there: parameters ask for what has not begun, and it is
+    /// required.
+    pub(crate) fn may_refuse(&self, component: &Component) -> bool {
         let settings = component.host_settings();
-        if self.network.is_none() && !settings.zenoh_config.is_empty() {
-            self.connect(component)?;
-            if let Some(network) = &mut self.network {
-                network
-                    .observer()
-                    .on_jump(component, AppliedEvent::Restore, self.interface);
+        let logs = self.log.is_none() && !settings.log_path.is_empty();
+        let publishes = self.network.is_none() && !settings.zenoh_config.is_empty();
+        settings.log_required && (logs || publishes)
+    }
+
+    /// An instance that was not initialised here goes to a state, `there`: what its parameters ask for begins; if it is
+    /// required all of it or, with an error, nothing.
+    pub(crate) fn begin_late(&mut self, there: &Component) -> Result<Begun, Fault> {
+        let settings = there.host_settings();
+        let mut begun = Begun::default();
+        if there.mode() != Mode::Stepping {
+            return Ok(begun);
+        }
+        let outcome = self.begin_what_waits(there, &mut begun);
+        match outcome {
+            Err(fault) if settings.log_required => {
+                if let Some(network) = begun.network {
+                    // Nobody has seen it yet; why the state is refused is what counts.
+                    let _ = network.close(&mut Unobserved);
+                }
+                return Err(fault);
             }
+            Err(fault) => self.complaint = Some(fault.to_string()),
+            Ok(()) => {}
+        }
+        Ok(begun)
+    }
+
+    fn begin_what_waits(&mut self, there: &Component, begun: &mut Begun) -> Result<(), Fault> {
+        let settings = there.host_settings();
+        if self.network.is_none() && !settings.zenoh_config.is_empty() {
+            let network = begun.network.insert(self.connect(there)?);
+            network
+                .observer()
+                .on_jump(there, AppliedEvent::Restore, self.interface);
         }
         if self.log.is_none() && !settings.log_path.is_empty() {
-            self.log = Some(self.create(component, ("restored", component.time()))?);
+            begun.log = Some(self.create(there, ("restored", there.time()))?);
         }
         Ok(())
+    }
+
+    /// The component has come to where they began.
+    pub(crate) fn adopt(&mut self, begun: Begun) {
+        if let Some(network) = begun.network {
+            self.event = Some(network.announcement());
+            self.network = Some(network);
+        }
+        if let Some(log) = begun.log {
+            self.log = Some(log);
+        }
     }
 
     /// The component was reset, or is no longer what it was: nothing more is told.

@@ -1,5 +1,5 @@
 //! Particles, walls and gates of a log as VTK: one `.vtp` a snapshot (XML with raw little-endian numbers behind it) and
-//! `.pvd` files that give their times to ParaView.
+//! `.pvd` files that give their times to ParaView. Snapshots of steps that were taken back are left out.
 
 use std::collections::HashMap;
 use std::io::{BufWriter, Write};
@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
 use super::Window;
 use super::export::{cannot_write, create};
 use crate::cli::CliError;
-use crate::record::{Body, Ending, Entry, LogReader};
+use crate::record::{Body, Ending, Entry, LogReader, Standing};
 use crate::wire::foxglove::{FrameTransform, PointCloud, Pose, SceneEntity, SceneUpdate};
 
 /// Writes what is in `window` to the new folder `folder`, all or nothing; gives a line for people and how the log ends.
@@ -41,6 +41,7 @@ fn fill(log: &Path, folder: &Path, window: &Window) -> Result<(String, Ending), 
     let mut scene = SceneUpdate::default();
     let mut frames: HashMap<String, Isometry3<f64>> = HashMap::new();
     let (mut particles, mut walls) = (Vec::new(), Vec::new());
+    let (standing, mut snapshots) = (Standing::of(log)?, 0..);
     let mut reader = LogReader::open(log)?;
     for entry in reader.by_ref() {
         let Entry::Message { log_time, body, .. } = entry? else {
@@ -51,7 +52,11 @@ fn fill(log: &Path, folder: &Path, window: &Window) -> Result<(String, Ending), 
             Body::Frame(frame) => {
                 frames.insert(frame.child_frame_id.clone(), placed(&frame));
             }
-            Body::Particles(cloud) if window.has(log_time) => {
+            Body::Particles(cloud) => {
+                let stands = snapshots.next().is_some_and(|k| standing.snapshot(k));
+                if !(stands && window.has(log_time)) {
+                    continue;
+                }
                 let (time, number) = (log_time as f64 * 1e-9, particles.len());
                 let name = format!("particles-{number:06}.vtp");
                 save(&folder.join(&name), &particle_data(&cloud))?;

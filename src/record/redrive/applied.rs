@@ -4,7 +4,7 @@
 use super::Run;
 use super::outcome::RedriveError;
 use crate::component::{StepReport, Wish, saved_checksum};
-use crate::record::compare::{disagree, same};
+use crate::record::compare::{disagree, same, same_alone};
 use crate::record::json::hex;
 use crate::wire::Moment;
 use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, AppliedMoment};
@@ -25,7 +25,7 @@ impl Run {
             f64::from_bits(applied.t_bits),
             f64::from_bits(applied.h_bits),
         );
-        if t.to_bits() != applied.t.to_bits() || (h.to_bits() != applied.h.to_bits()) {
+        if !(same_alone(applied.t, t) && same_alone(applied.h, h)) {
             return Ok(Some((
                 "time".to_owned(),
                 disagree(&[t, h], &[applied.t, applied.h]),

@@ -271,7 +271,7 @@ fn a_log_that_starts_at_another_time_runs_again() {
     let folder = temp_dir::TempDir::new().unwrap();
     let scene = sandgate::scene::load(&python::root().join("tests/scenes/small_silo.toml"));
     let scene = scene.unwrap_or_else(|why| panic!("{why}"));
-    for start in [2.5, -1.0, 1e9] {
+    for start in [2.5, -1.0, 1e9, -0.0] {
         let mut component = Component::new(&scene).unwrap();
         component.enter_initialization(start, None).unwrap();
         let file = folder.path().join(format!("{start}.mcap"));
@@ -333,6 +333,31 @@ fn a_log_with_a_failed_step_runs_again_up_to_it() {
     let done = redrive(&file, &RedriveOptions::default(), &mut |_| {}).unwrap();
     assert_eq!((done.difference, done.same_state), (None, None));
     assert_eq!(done.steps, steps);
+}
+
+/// The file that a log goes on in when its component is brought to the state of one that failed elsewhere.
+#[test]
+fn a_log_that_begins_from_a_failed_state_and_is_terminated_runs_again() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let scene = sandgate::scene::load(&python::root().join("tests/scenes/no_floor.toml"));
+    let scene = scene.unwrap_or_else(|why| panic!("{why}"));
+    let mut failed = Component::new(&scene).unwrap();
+    failed.initialize(0.0, None).unwrap();
+    while failed.do_step(failed.time(), scene.run.step).is_ok() {}
+    for ends in [true, false] {
+        let mut component = Component::new(&scene).unwrap();
+        component.restore(&failed.save().unwrap()).unwrap();
+        let file = folder.path().join(format!("terminated_{ends}.mcap"));
+        let options = RecordOptions::of(&component);
+        let recorder = Recorder::create(&file, &component, options).unwrap();
+        if ends {
+            component.terminate().unwrap();
+        }
+        recorder.finish(&component, "done").unwrap();
+        let done = redrive(&file, &RedriveOptions::default(), &mut |_| {}).unwrap();
+        assert_eq!(done.difference, None);
+        assert_eq!(done.same_state, ends.then_some(true));
+    }
 }
 
 #[test]

@@ -1,0 +1,235 @@
+//! Fills a table from the messages of a log in their order.
+
+use super::{Column, Table};
+use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
+use crate::record::read::Body;
+use crate::record::standing::Standing;
+use crate::scene;
+use crate::wire::messages::{Applied, AppliedEvent, Gauge, StepStats};
+use std::collections::HashMap;
+
+/// A table in the making.
+pub(super) struct Builder<'a> {
+    standing: &'a Standing,
+    scene: scene::Scene,
+    table: Table,
+    /// Columns of a variable: one, or one each element.
+    places: HashMap<String, Vec<usize>>,
+    /// Of each column.
+    ranges: Vec<Option<(f64, f64)>>,
+    now: Now,
+    /// Time of the last line of figures [s].
+    time: f64,
+    /// Whether a step was done whose figures come next.
+    stepped: bool,
+    /// Lines of figures and SAVEs so far.
+    lines: usize,
+    saves: usize,
+    /// As it was when states were saved to which the log comes back, and how often it still does, by checksum.
+    saved: HashMap<Vec<u8>, (Now, usize)>,
+    span: (f64, f64),
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(scene: scene::Scene, span: (f64, f64), standing: &'a Standing) -> Self {
+        let variables = VariableTable::of(&scene);
+        let mut places: HashMap<String, Vec<usize>> = HashMap::new();
+        let (mut columns, mut row, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+        let scalars = variables
+            .rows()
+            .iter()
+            .filter(|v| matches!(v.causality, Causality::Input | Causality::Output))
+            .filter(|v| v.shape.is_empty());
+        for variable in scalars {
+            let own = match variable.element_of {
+                None => Some(variable),
+                Some((array, _)) => variables.by_reference(array),
+            };
+            if let Some(own) = own {
+                let list = places.entry(own.name.clone()).or_default();
+                list.push(columns.len());
+            }
+            let start = match &variable.start {
+                Start::Exact(values) => values.first().copied(),
+                Start::Empty | Start::Calculated => None,
+            };
+            row.push(start.unwrap_or(f64::NAN));
+            ranges.push(variable.range);
+            columns.push(Column {
+                name: variable.name.clone(),
+                unit: variable.unit.to_owned(),
+                description: variable.description.clone(),
+                is_input: variable.causality == Causality::Input,
+                is_flag: variable.kind == ValueKind::Boolean
+                    || variable.name.ends_with(".validity"),
+                values: Vec::new(),
+            });
+        }
+        Self {
+            standing,
+            scene,
+            table: Table {
+                columns,
+                ..Table::default()
+            },
+            places,
+            ranges,
+            lines: 0,
+            saves: 0,
+            saved: HashMap::new(),
+            now: Now {
+                slopes: vec![0.0; row.len()],
+                row,
+            },
+            time: 0.0,
+            stepped: false,
+            span,
+        }
+    }
+
+    pub(super) fn finish(self) -> Table {
+        self.table
+    }
+
+    /// Inputs are those of a saved state. One that does not fit leaves them as nobody knows them.
+    pub(super) fn begin_at(&mut self, state: &[u8]) {
+        let component = Component::new(&self.scene).and_then(|mut component| {
+            component.restore(state)?;
+            Ok(component)
+        });
+        let slopes = component.as_ref().map(Component::input_slopes);
+        for (place, column) in self.table.columns.iter().enumerate() {
+            if !column.is_input {
+                continue;
+            }
+            self.now.row[place] = f64::NAN;
+            if let (Ok(component), Ok(slopes)) = (&component, &slopes)
+                && let Some(variable) = component.variables().by_name(&column.name)
+            {
+                let mut own = [f64::NAN];
+                // Refused only for arrays, which a column is not.
+                if component.get(&[variable.reference], &mut own).is_ok() {
+                    self.now.row[place] = own[0];
+                }
+                let slope = slopes.iter().find(|(r, _)| *r == variable.reference);
+                self.now.slopes[place] = slope.map_or(0.0, |(_, slope)| *slope);
+            }
+        }
+    }
+
+    pub(super) fn add(&mut self, body: Body) {
+        match body {
+            Body::Applied(applied) => self.inputs(&applied),
+            Body::Gauge(gauge) => self.gauge(&gauge),
+            // Comes after all outputs of its point.
+            Body::Stats(stats) => self.row(&stats),
+            _ => {}
+        }
+    }
+
+    fn row(&mut self, stats: &StepStats) {
+        if std::mem::take(&mut self.stepped) {
+            self.ramp(stats.time - self.time);
+        }
+        self.time = stats.time;
+        let stands = self.standing.row(self.lines);
+        self.lines += 1;
+        if !(stands && (self.span.0..=self.span.1).contains(&stats.time)) {
+            return;
+        }
+        self.table.time.push(stats.time);
+        self.table.step.push(stats.step);
+        for (column, value) in self.table.columns.iter_mut().zip(&self.now.row) {
+            column.values.push(*value);
+        }
+    }
+
+    fn inputs(&mut self, applied: &Applied) {
+        let moments = applied.moments.iter().flat_map(|moment| &moment.inputs);
+        for input in applied.inputs.iter().chain(moments) {
+            let places = self.places.get(&input.name).map_or(&[][..], Vec::as_slice);
+            if input.slope {
+                for (&place, &slope) in places.iter().zip(&input.values) {
+                    self.now.slopes[place] = slope;
+                }
+                continue;
+            }
+            // A value that is set is held.
+            places
+                .iter()
+                .for_each(|&place| self.now.slopes[place] = 0.0);
+            self.put(&input.name, &input.values);
+        }
+        match applied.event() {
+            AppliedEvent::Step => self.stepped = true,
+            AppliedEvent::Save => self.save(&applied.state),
+            AppliedEvent::Restore => self.restore(&applied.state),
+            _ => {}
+        }
+    }
+
+    fn save(&mut self, state: &[u8]) {
+        let returns = self.standing.returns(self.saves);
+        self.saves += 1;
+        if returns > 0 {
+            self.saved
+                .insert(state.to_vec(), (self.now.clone(), returns));
+        }
+    }
+
+    /// Outputs of the state come again; its inputs do not.
+    fn restore(&mut self, state: &[u8]) {
+        let Some((then, returns)) = self.saved.get_mut(state) else {
+            return;
+        };
+        self.now.clone_from(then);
+        *returns -= 1;
+        if *returns == 0 {
+            self.saved.remove(state);
+        }
+    }
+
+    /// Inputs that had a slope hold what they reached in so many seconds, as the component has it, bit for bit.
+    fn ramp(&mut self, elapsed: f64) {
+        let Now { row, slopes } = &mut self.now;
+        for ((value, slope), range) in row.iter_mut().zip(slopes).zip(&self.ranges) {
+            if *slope == 0.0 {
+                continue;
+            }
+            *value += *slope * elapsed;
+            if let Some((least, most)) = range {
+                *value = value.clamp(*least, *most);
+            }
+            *slope = 0.0;
+        }
+    }
+
+    fn gauge(&mut self, gauge: &Gauge) {
+        self.put(&gauge.name, &gauge.values);
+        if let Some((device, _)) = gauge.name.rsplit_once('.') {
+            self.put(&format!("{device}.validity"), &[f64::from(gauge.validity)]);
+        }
+    }
+
+    fn put(&mut self, name: &str, values: &[f64]) {
+        let places = self.places.get(name).map_or(&[][..], Vec::as_slice);
+        for (&place, &value) in places.iter().zip(values) {
+            // The log has what was asked for. What was taken and lies out of the range was clamped.
+            self.now.row[place] = match self.ranges[place] {
+                Some((least, most)) if self.table.columns[place].is_input => {
+                    value.clamp(least, most)
+                }
+                _ => value,
+            };
+        }
+    }
+}
+
+/// What the columns are now.
+#[derive(Clone)]
+struct Now {
+    /// The row being filled.
+    row: Vec<f64>,
+    /// Of each column, per second; only inputs have one, for the step that comes.
+    slopes: Vec<f64>,
+}
