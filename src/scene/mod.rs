@@ -20,6 +20,7 @@ mod steady_flow;
 mod types;
 
 pub use adjust::Adjustable;
+pub(crate) use build::rigid_motion;
 pub use build::{build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
 pub use gates::BehindWall;

@@ -21,6 +21,7 @@ use plates::{plates, with_plates};
 use walls::{movers, walls};
 
 pub(super) use walls::group;
+pub(crate) use walls::rigid_motion;
 
 /// The first D components of a point.
 #[must_use]

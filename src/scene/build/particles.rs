@@ -8,8 +8,7 @@ use crate::shape::{Lattice, lattice};
 use crate::solver::{Scheme, three};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
-use super::walls::rigid_motion;
-use super::{geometry, narrow};
+use super::{geometry, narrow, rigid_motion};
 use crate::scene::load::Loads;
 use crate::scene::steady_flow::steady_flow;
 use crate::scene::{Dimension, Point, Scene};
