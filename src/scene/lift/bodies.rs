@@ -187,7 +187,7 @@ impl Lift<'_> {
                 return None;
             }
         }
-        if let Some((i, j)) = crossing_edges(&points, eps) {
+        if let Some((i, j)) = crossing_edges(&points, true, eps) {
             self.problems.report(
                 &at.place,
                 format!("the edge after point {i} crosses the edge after point {j}"),

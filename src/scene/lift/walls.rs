@@ -2,7 +2,7 @@
 
 use super::Lift;
 use super::faces::plate_places;
-use super::geometry::Region;
+use super::geometry::{Region, crossing_edges};
 use crate::math::{cross, length, normalized, sub};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
 use crate::scene::types::{Dimension, Gate, Point, Slip, Wall, WallGeometry};
@@ -168,6 +168,15 @@ impl Lift<'_> {
                 return None;
             }
             segments.push((a, b));
+        }
+        if let Some((i, j)) = crossing_edges(&points, closed, eps) {
+            self.problems.report(
+                &at.place,
+                format!("the segment after point {i} crosses the segment after point {j}"),
+                "a polyline that does not cross itself; its ends may touch it",
+                "give the points in order along the surface, material on the left (points count from 0), or make two walls of it",
+            );
+            return None;
         }
         for (corner, [x, y]) in at.value.0.iter().zip(&points) {
             self.check_inside(&corner.place, [*x, *y, 0.0]);
