@@ -288,7 +288,10 @@ impl Lift<'_> {
                 self.problems.report(
                     place,
                     format!("a body {extent} m wide along {}", Self::axis_name(axis)),
-                    format!("at least numerics.spacing, {spacing} m, along every axis"),
+                    format!(
+                        "at least numerics.spacing, {spacing} m{}, along every axis",
+                        self.of_quality()
+                    ),
                     "enlarge the body or refine numerics.spacing",
                 );
                 return;

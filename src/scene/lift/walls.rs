@@ -9,7 +9,7 @@ use crate::scene::types::{Dimension, Gate, Point, Slip, Wall, WallGeometry};
 use crate::units::shown_bound;
 
 /// Rows of wall particles: a gate is at least this many spacings deep.
-const ROWS: f64 = 4.0;
+pub(in crate::scene) const ROWS: f64 = 4.0;
 
 /// A wall, as far as bodies must keep clear of it.
 pub(super) enum Solid {
@@ -266,8 +266,9 @@ impl Lift<'_> {
                 &at.place,
                 format!("{} m", at.value.0),
                 format!(
-                    "at least {} m, four times numerics.spacing",
-                    shown_bound(least)
+                    "at least {} m, four times numerics.spacing{}",
+                    shown_bound(least),
+                    self.of_quality()
                 ),
                 "thicken the gate, leave thickness out, or refine numerics.spacing",
             );
@@ -315,8 +316,9 @@ impl Lift<'_> {
                     shown_bound(if thin.is_nan() { 0.0 } else { thin })
                 ),
                 format!(
-                    "at least {} m, two spacings; in space span is not parallel to from - to",
-                    shown_bound(least)
+                    "at least {} m, two spacings{}; in space span is not parallel to from - to",
+                    shown_bound(least),
+                    self.of_quality()
                 ),
                 "move from and to apart, or refine numerics.spacing",
             );
