@@ -22,7 +22,7 @@ mod types;
 
 pub use adjust::Adjustable;
 pub(crate) use build::rigid_motion;
-pub use build::{build, geometry, narrow};
+pub use build::{BodyMass, build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
 pub use gates::BehindWall;
 pub(crate) use lift::MOST_PARTICLES;

@@ -1,6 +1,7 @@
 //! Scene to what the solver runs: particles, wall points, devices. The last module that knows scenes.
 
 mod inflows;
+mod masses;
 mod overlap;
 mod particles;
 mod plates;
@@ -20,6 +21,7 @@ use particles::{spins, state};
 use plates::{plates, with_plates};
 use walls::{movers, walls};
 
+pub use masses::BodyMass;
 pub(super) use walls::group;
 pub(crate) use walls::rigid_motion;
 

@@ -235,23 +235,6 @@ fn inner_point(points: &[Flat]) -> Option<Flat> {
     }
 }
 
-/// The part of a polygon with `direction` . x <= `level`.
-pub(super) fn cut_below(points: &[Flat], direction: Flat, level: f64) -> Vec<Flat> {
-    let height = |p: Flat| p[0] * direction[0] + p[1] * direction[1] - level;
-    let mut kept = Vec::new();
-    for (s, t) in edges(points) {
-        let (hs, ht) = (height(s), height(t));
-        if hs <= 0.0 {
-            kept.push(s);
-        }
-        if (hs <= 0.0) != (ht <= 0.0) {
-            let share = hs / (hs - ht);
-            kept.push([s[0] + share * (t[0] - s[0]), s[1] + share * (t[1] - s[1])]);
-        }
-    }
-    kept
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
