@@ -2,8 +2,36 @@
 
 use crate::scene::Scene;
 
+/// Share of a body's mass that its particles may miss or add without a word [1].
+const MASS_TOLERANCE: f64 = 0.01;
+
 /// Remarks on a scene, none for most.
 pub(super) fn remarks(scene: &Scene) -> Vec<String> {
+    gates(scene).into_iter().chain(bodies(scene)).collect()
+}
+
+/// Bodies whose particles weigh more or less than their shape.
+fn bodies(scene: &Scene) -> Vec<String> {
+    let masses = scene.body_masses().into_iter();
+    masses
+        .filter_map(|mass| {
+            let off = mass.particles / mass.shape - 1.0;
+            (off.abs() > MASS_TOLERANCE).then(|| {
+                format!(
+                    "note: body {}: its particles weigh {:.6} kg, its shape {:.6} kg: {:+.1} %, as cells of the lattice do not end at\n  \
+                     its rim. A finer spacing comes closer; boxes are exact.",
+                    scene.bodies[mass.body].name,
+                    mass.particles,
+                    mass.shape,
+                    100.0 * off,
+                )
+            })
+        })
+        .collect()
+}
+
+/// Gates whose opening begins behind a wall.
+fn gates(scene: &Scene) -> Vec<String> {
     let gates = scene.gates.iter();
     gates
         .filter_map(|gate| {
@@ -43,6 +71,61 @@ mod tests {
         let (_, after) = after.split_once('\n').unwrap();
         let text = format!("{before}[gates.sluice]\nfrom = {from}\n{after}");
         crate::scene::parse("sluice", &text).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    /// A scene with this body, 10 mm fine.
+    fn with_body(dimension: &str, body: &str) -> Scene {
+        let corner = |x: f64| match dimension {
+            "3" => format!("[{x}, {x}, {x}]"),
+            "2" => format!("[{x}, {x}]"),
+            _ => format!("[{}, {x}]", x.max(0.0)),
+        };
+        let text = format!(
+            "name = \"b\"\ndimension = {dimension}\n[domain]\nlower = {}\nupper = {}\n[numerics]\nspacing = 0.01\n\
+             [materials.water]\nlaw = \"fluid\"\npreset = \"water\"\n\
+             [bodies.b]\nmaterial = \"water\"\n{body}\n[run]\nstep = 0.01\nuntil = 0.1\n",
+            corner(-0.2),
+            corner(0.6),
+        );
+        crate::scene::parse("b", &text).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    #[test]
+    fn bodies_that_weigh_another_than_their_shape_are_told_with_both_masses() {
+        for (dimension, body, shape) in [
+            (
+                "2",
+                "circle = { centre = [0.2, 0.2], radius = 0.05 }",
+                "7.8",
+            ),
+            (
+                "\"axisymmetric\"",
+                "polygon = [[0, 0], [0.1, 0], [0, 0.1]]",
+                "1.047",
+            ),
+        ] {
+            let told = remarks(&with_body(dimension, body));
+            let [note] = &told[..] else {
+                panic!("{body}: {told:?}");
+            };
+            let part = format!("its shape {shape}");
+            assert!(note.contains("body b") && note.contains(&part), "{note}");
+        }
+        for (dimension, body) in [
+            ("2", "box = { lower = [0, 0], upper = [0.203, 0.107] }"),
+            ("2", "circle = { centre = [0.2, 0.2], radius = 0.3 }"),
+            (
+                "\"axisymmetric\"",
+                "box = { lower = [0, 0], upper = [0.104, 0.203] }",
+            ),
+            (
+                "3",
+                "box = { lower = [0, 0, 0], upper = [0.1, 0.104, 0.1] }\nlevel = 0.07",
+            ),
+        ] {
+            let told = remarks(&with_body(dimension, body));
+            assert_eq!(told, Vec::<String>::new(), "{body}");
+        }
     }
 
     #[test]

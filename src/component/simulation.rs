@@ -1,6 +1,7 @@
 //! State, solver and gauges of a scene in D dimensions: the one implementation of [`Engine`].
 
 mod sight;
+mod solids;
 
 use std::sync::OnceLock;
 
@@ -13,11 +14,14 @@ use crate::math::{Geometry, Vector};
 use crate::scene::{self, Dimension, Scene};
 use crate::solver::{Solver, StaysAwake, StepInputs, three};
 use crate::state::{RestState, State};
+use solids::Solids;
 
 struct Simulation<const D: usize> {
     state: State<D>,
     solver: Solver<D>,
     sampler: Sampler<D>,
+    /// Surfaces of walls and gates, for gauges.
+    solids: Solids<D>,
     /// Readings of a scene that sleeps: they do not change until it wakes.
     still: OnceLock<Vec<Reading>>,
     /// Internal steps done when the communication step began, if the scene slept then.
@@ -56,6 +60,7 @@ impl<const D: usize> Simulation<D> {
             state,
             solver,
             sampler: Sampler::new(scene),
+            solids: Solids::new(scene),
             still: OnceLock::new(),
             slept_at: None,
             devices: Devices::default(),

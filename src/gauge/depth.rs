@@ -4,7 +4,8 @@
 //! The sum is S = (S_m + S_b) / (1 - S_s): material ends where half of what walls leave free is filled. The bed
 //! counts as filled, so that a layer thinner than the kernel has its own height; side walls count as more of what
 //! is beside them, so that a line along a wall reads what a line in the middle reads. Far from walls S = S_m.
-//! Where there is no material at all, S = 0.
+//! Where there is no material at all, and behind the surface of a wall or gate, S = 0: material that touches a roof ends
+//! there.
 
 use super::nearby::Nearby;
 use super::{Reading, Validity, View, along};
@@ -53,7 +54,7 @@ impl<const D: usize> DepthLine<D> {
     ///
     /// By false position, the weight of the end that stays halved (Illinois): S is as smooth as the kernel.
     fn crossing(&self, view: &View<D>, near: &Nearby<D>, filled: usize) -> f64 {
-        let excess = |height: f64| self.fill(near, height) - 0.5;
+        let excess = |height: f64| self.fill(view, near, height) - 0.5;
         let (mut low, mut high) = (self.height(view, filled), self.height(view, filled + 1));
         let (mut above, mut below) = (excess(low), excess(high));
         let fine = 1e-12 * view.spacing;
@@ -95,7 +96,9 @@ impl<const D: usize> DepthLine<D> {
         if view.is_outside(&self.foot) {
             return Err(Validity::Outside);
         }
-        if view.is_covered(&along(&self.foot, &self.up, view.spacing)) {
+        let above = along(&self.foot, &self.up, view.spacing);
+        // Corners between walls that meet are behind neither.
+        if view.is_inside(&above) || view.is_covered(&above) {
             return Err(Validity::Blocked);
         }
         let filled = self.highest_filled(view, near).ok_or(Validity::Empty)?;
@@ -132,7 +135,7 @@ impl<const D: usize> DepthLine<D> {
             if near.gather(&centre, 0.5 * support)
                 && let Some(k) = (bottom..top)
                     .rev()
-                    .find(|&k| self.fill(near, height(k)) >= 0.5)
+                    .find(|&k| self.fill(view, near, height(k)) >= 0.5)
             {
                 return Some(k);
             }
@@ -142,14 +145,17 @@ impl<const D: usize> DepthLine<D> {
     }
 
     /// The sum S at a height above the foot.
-    fn fill(&self, near: &Nearby<D>, height: f64) -> f64 {
+    fn fill(&self, view: &View<D>, near: &Nearby<D>, height: f64) -> f64 {
         let at = along(&self.foot, &self.up, height);
         let material = near.material_sum(&at);
         if material == 0.0 {
             return 0.0;
         }
         let (bed, side) = near.solid_sums(&at, &self.foot, &self.up);
-        // The bound keeps a place inside a wall from dividing by nothing.
+        if bed + side > 0.0 && view.is_inside(&at) {
+            return 0.0;
+        }
+        // The bound keeps a place in a corner between walls from dividing by nothing.
         (material + bed) / (1.0 - side).max(0.1)
     }
 }
@@ -238,6 +244,34 @@ mod tests {
     }
 
     #[test]
+    fn material_that_touches_a_lid_is_as_deep_as_the_lid_is_high() {
+        for ratio in [1.3, 1.6, 2.0] {
+            let bed = Bed::<2>::new(ratio, 6, 0.0).with_lid();
+            let line = DepthLine {
+                foot: [0.2, 0.0],
+                up: [0.0, 1.0],
+                length: 0.5,
+            };
+            let depth = bed.look(|view| line.sample(view)).values[0];
+            // A face is known to a thousandth of a spacing.
+            let off = (depth - bed.height()) / bed.spacing;
+            assert!(off.abs() < 2e-3, "h/dp {ratio}: off by {off} dp");
+        }
+    }
+
+    #[test]
+    fn a_line_into_the_bed_is_blocked() {
+        let bed = Bed::<2>::new(1.6, 6, 0.0);
+        let line = DepthLine {
+            foot: [0.2, 0.0],
+            up: [0.0, -1.0],
+            length: 0.5,
+        };
+        let depth = bed.look(|view| line.sample(view));
+        assert_eq!(depth, Reading::none(1, Validity::Blocked));
+    }
+
+    #[test]
     fn dry_outside_and_covered_places_say_so() {
         let bed = Bed::<2>::new(1.6, 0, 0.0);
         let up = [0.0, 1.0];
@@ -276,7 +310,7 @@ mod tests {
                 all.gather(&foot, length + view.spacing);
                 let everywhere = (0..=line.count(view))
                     .rev()
-                    .find(|&k| line.fill(&all, line.height(view, k)) >= 0.5);
+                    .find(|&k| line.fill(view, &all, line.height(view, k)) >= 0.5);
                 let mut near = Nearby::new(view);
                 assert_eq!(line.highest_filled(view, &mut near), everywhere, "line {k}");
                 let deep = line.depth(view).is_ok_and(|depth| depth >= view.spacing);

@@ -1,5 +1,5 @@
 //! Front: the outermost place along a direction with a depth of at least so much, and the 99.5 % mass
-//! quantile beside it.
+//! quantile beside it. Material that leans on a wall ends at the wall's face: what is behind it has no depth.
 //!
 //! In space, only the vertical plane through the origin along the direction is looked at: depths are those on it,
 //! and the quantile is of the mass within one kernel radius of it.

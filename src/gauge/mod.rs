@@ -14,6 +14,7 @@ mod mass;
 mod nearby;
 mod pressure;
 mod profile;
+mod solid;
 mod view;
 
 pub use crossing::Crossing;
@@ -23,6 +24,7 @@ pub use interface::interface_stress;
 pub use mass::MassBox;
 pub use pressure::PressureProbe;
 pub use profile::Profile;
+pub use solid::Solid;
 pub use view::View;
 
 /// Whether a reading means something. Its number is what the `gauge.NAME.validity` variable shows.

@@ -1,8 +1,12 @@
 //! What gauges see: particles, wall particles and the box they are in. Borrowed for one sampling.
 
+use super::Solid;
 use crate::kernel::WendlandC2;
 use crate::math::Geometry;
 use crate::state::CellGrid;
+
+/// Spacings behind a face up to which a place counts as on it: scenes give feet and faces to a few digits.
+const SLACK: f64 = 1e-3;
 
 /// Particles and walls at one time. All slices have one entry a particle.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +23,8 @@ pub struct View<'a, const D: usize> {
     pub cells: &'a CellGrid<D>,
     /// The grid over wall and gate particles, one each spacing^D of solid; may be empty.
     pub solid: &'a CellGrid<D>,
+    /// The same walls and gates by their surfaces.
+    pub solids: &'a [Solid<D>],
     /// Particle spacing dp [m].
     pub spacing: f64,
     /// The kernel of the simulation.
@@ -78,7 +84,19 @@ impl<const D: usize> View<'_, D> {
         self.for_each_near(self.cells, at, visit);
     }
 
-    /// Whether a place is inside a wall or gate.
+    /// Whether a place is behind the surface of a wall or gate.
+    #[must_use]
+    pub fn is_inside(&self, at: &[f64; D]) -> bool {
+        let mut at = *at;
+        for a in (0..D).filter(|&a| self.periodic[a]) {
+            at[a] =
+                self.lower[a] + (at[a] - self.lower[a]).rem_euclid(self.upper[a] - self.lower[a]);
+        }
+        let slack = SLACK * self.spacing;
+        self.solids.iter().any(|solid| solid.holds(&at, slack))
+    }
+
+    /// Whether a place is amid the particles of a wall or gate, most of a spacing behind its face.
     ///
     /// Walls are lattices of points, their faces half a spacing before the first row. In a corner of three walls
     /// the sum over solid reaches 7/8 on the face itself, hence 0.9.
@@ -114,6 +132,7 @@ pub(super) mod bed {
         columns: usize,
         position: Vec<[f64; D]>,
         solid: Vec<[f64; D]>,
+        solids: Vec<Solid<D>>,
         periodic: bool,
     }
 
@@ -128,7 +147,12 @@ pub(super) mod bed {
                 x + jitter * spacing * (2.0 * noise - 1.0)
             });
             let solid = lattice(columns, -4, 0, spacing, &mut |x| x);
+            let floor = Solid::Behind {
+                point: [0.0; D],
+                normal: std::array::from_fn(|k| f64::from(u8::from(k == 1))),
+            };
             Self {
+                solids: vec![floor],
                 spacing,
                 ratio,
                 rows,
@@ -148,7 +172,24 @@ pub(super) mod bed {
                 x[0] -= 4.0 * bed.spacing;
                 x
             }));
+            bed.solids.push(Solid::Behind {
+                point: [0.0; D],
+                normal: std::array::from_fn(|k| f64::from(u8::from(k == 0))),
+            });
             bed
+        }
+
+        /// With a lid that touches it, four rows deep.
+        pub(in crate::gauge) fn with_lid(mut self) -> Self {
+            let (rows, height) = (self.rows as i32, self.height());
+            let lid: Vec<[f64; D]> =
+                lattice(self.columns, rows, rows + 4, self.spacing, &mut |x| x);
+            self.solid.extend(lid);
+            self.solids.push(Solid::Behind {
+                point: [height; D],
+                normal: std::array::from_fn(|k| -f64::from(u8::from(k == 1))),
+            });
+            self
         }
 
         /// Only the particles that satisfy `predicate`.
@@ -196,6 +237,7 @@ pub(super) mod bed {
                 pressure: &pressure,
                 cells: &CellGrid::build(&self.position, kernel.support(), &periods),
                 solid: &CellGrid::build(&self.solid, kernel.support(), &periods),
+                solids: &self.solids,
                 spacing: self.spacing,
                 kernel,
                 geometry,

@@ -17,10 +17,12 @@ mod raw;
 mod reference;
 mod roof;
 mod steady_flow;
+mod syntax;
 mod types;
 
 pub use adjust::Adjustable;
-pub use build::{build, geometry, narrow};
+pub(crate) use build::rigid_motion;
+pub use build::{BodyMass, build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
 pub use gates::BehindWall;
 pub(crate) use lift::MOST_PARTICLES;
@@ -111,7 +113,7 @@ fn parse_changed(
                 lift::lift(&scene, text, &mut problems)
             }),
         (_, errors) => {
-            report_syntax(text, &errors, &mut problems);
+            syntax::report_syntax(text, &errors, &mut problems);
             None
         }
     };
@@ -128,48 +130,6 @@ fn parse_changed(
         Some(scene) if problems.is_empty() => Ok(scene),
         _ => Err(SceneErrors::new(problems.into_vec())),
     }
-}
-
-/// Text that is not TOML: every syntax error with its line.
-fn report_syntax(text: &str, errors: &[toml::de::Error], problems: &mut Problems) {
-    let mut repeated = Vec::new();
-    for error in errors {
-        let span = error.span().unwrap_or(0..0);
-        let mut found = error.message().to_owned();
-        if found.contains("duplicate key") {
-            // A section that stands twice: its keys are reported again one by one, which says nothing new.
-            let header = section_start(text, span.start);
-            if repeated.contains(&header) {
-                continue;
-            }
-            if text
-                .get(header..span.start)
-                .is_some_and(|t| !t.contains('\n'))
-            {
-                repeated.push(header);
-            }
-            let key = text.get(span.clone()).unwrap_or_default();
-            found = format!("duplicate key {}", crate::units::quote(key));
-        }
-        let remedy = if error.message().contains("duplicate key") {
-            "rename or delete one of the two: every name and key stands once in its section"
-        } else if text.trim_start().starts_with(['{', '<']) {
-            "scene files are TOML, not JSON or XML: see docs/scene.md"
-        } else {
-            "correct the line: keys are written key = value, text in double quotes, sections as [name]"
-        };
-        problems.report(&raw::syntax_place(span.start), found, "TOML", remedy);
-    }
-}
-
-/// Offset of the `[section]` line that an offset belongs to; 0 before the first.
-fn section_start(text: &str, offset: usize) -> usize {
-    let before = text.get(..offset).unwrap_or_default();
-    let line = before.rfind('\n').map_or(0, |at| at + 1);
-    if before[line..].starts_with('[') {
-        return line;
-    }
-    before.rfind("\n[").map_or(0, |at| at + 1)
 }
 
 impl Scene {

@@ -1,8 +1,10 @@
 //! Rank 1: regions to fill with material: inside tests, bounds, lattices. Points are `[x, y, z]`, z = 0 in planar scenes.
 
 mod fill;
+mod measure;
 
 pub use fill::{Lattice, lattice};
+pub use measure::cut_below;
 
 /// A region of space.
 #[derive(Clone, Debug, PartialEq)]

@@ -82,7 +82,8 @@ fn summary(run: &PrecisionRun) -> String {
 /// What each quality comes to in each study.
 fn qualities(run: &PrecisionRun) -> String {
     let mut text = "\n## What the quality knob picks\n\n`quality = \"draft\" | \"standard\" | \"fine\"` in `[numerics]`, or the parameter \
-         `solver.quality` (0, 1, 2) of a component, is a resolution: steps, tolerances and all else stay what they are.\n\n| quality | resolution |\n|---|---|\n"
+         `solver.quality` (0, 1, 2) of a component, is a resolution: steps, tolerances and all else stay what they are. \
+         Where a gate's thickness, a circle or a period would not fit the spacing that it makes, the nearest that fits is taken.\n\n| quality | resolution |\n|---|---|\n"
         .to_owned();
     for quality in Quality::ALL {
         text.push_str(&format!(

@@ -56,9 +56,14 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
 fn quality(scene: &Scene) -> String {
     let n = &scene.numerics;
     format!(
-        "{}: {} times the resolution that the scene gives, courant {}, solver_tolerance {} (docs/precision.md)",
+        "{}: {}, courant {}, solver_tolerance {} (docs/precision.md)",
         scene.quality.name(),
-        scene.quality.resolution(),
+        match scene.quality.resolution() {
+            1.0 => "the resolution that the scene gives".to_owned(),
+            times => format!(
+                "{times} times the resolution that the scene gives, or the nearest that fits its gates, circles and periods"
+            ),
+        },
         n.courant,
         n.solver_tolerance,
     )

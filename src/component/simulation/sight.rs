@@ -30,6 +30,8 @@ impl<const D: usize> Simulation<D> {
             .map(|(x, _)| *x)
             .collect();
         let solid = self.cells(&solid);
+        let openings = self.state.gates.iter().map(|g| g.opening);
+        let solids = self.solids.at(self.state.pose.now, openings);
         // Of all ranks together.
         let stress = OnceCell::new();
         let shown: Vec<(Sight, Shown<D>)> = self
@@ -49,6 +51,7 @@ impl<const D: usize> Simulation<D> {
                 pressure: &shown.pressure,
                 cells: &shown.cells,
                 solid: &solid,
+                solids: &solids,
                 spacing: self.spacing,
                 kernel: *self.solver.kernel(),
                 geometry: self.geometry,

@@ -2,6 +2,7 @@
 
 mod inflows;
 mod joins;
+mod masses;
 mod overlap;
 mod particles;
 mod places;
@@ -23,7 +24,9 @@ use particles::{spins, state};
 use plates::{plates, with_plates};
 use walls::{movers, walls};
 
+pub use masses::BodyMass;
 pub(super) use walls::group;
+pub(crate) use walls::rigid_motion;
 
 /// The first D components of a point.
 #[must_use]

@@ -8,11 +8,10 @@ use crate::shape::{Lattice, lattice};
 use crate::solver::{Scheme, three};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
-use super::walls::rigid_motion;
-use super::{geometry, narrow};
+use super::{geometry, narrow, rigid_motion};
 use crate::scene::load::Loads;
 use crate::scene::steady_flow::steady_flow;
-use crate::scene::{Dimension, Point, Scene};
+use crate::scene::{Body, Dimension, Point, Scene};
 
 /// Mass of a particle of `density` at a place that stands for `cell` m^D of the section [kg]. Rings far from the axis
 /// are heavier than those near it: the heaviest that the domain has room for sets what masses are multiples of.
@@ -118,9 +117,7 @@ fn grains<const D: usize>(
         let material = &scene.materials[body.material].material;
         let sound_speed = material.sound_speed.unwrap_or(scene.numerics.sound_speed);
         let flow = steady_flow(scene, body);
-        let bulk = flow
-            .as_ref()
-            .map_or(material.rest_density(), |f| f.loose_density);
+        let bulk = bulk_density(scene, body);
         // Rings are not packed (`solver/pack.rs`), and nothing damps what uneven ones of a fluid do to its pressure.
         let still = rings && material.is_fluid();
         for (n, place) in lattice.points.iter().enumerate() {
@@ -148,6 +145,12 @@ fn grains<const D: usize>(
     grains
 }
 
+/// Density that makes the masses of a body's particles [kg/m^3].
+pub(super) fn bulk_density(scene: &Scene, body: &Body) -> f64 {
+    let at_rest = scene.materials[body.material].material.rest_density();
+    steady_flow(scene, body).map_or(at_rest, |flow| flow.loose_density)
+}
+
 /// How bodies that turn do so at the start, by the numbers of their particles.
 pub(super) fn spins<const D: usize>(scene: &Scene) -> Vec<(Range<u64>, RigidMotion<D>)> {
     let mut first = 0;
@@ -166,7 +169,7 @@ pub(super) fn spins<const D: usize>(scene: &Scene) -> Vec<(Range<u64>, RigidMoti
 }
 
 /// What the bodies are filled on.
-fn lattices<const D: usize>(scene: &Scene) -> Vec<Lattice> {
+pub(super) fn lattices<const D: usize>(scene: &Scene) -> Vec<Lattice> {
     let rings = scene.dimension == Dimension::Axisymmetric;
     // With the packing of the start (`solver/pack.rs`), which evens what it leaves uneven beside walls.
     let staggered =

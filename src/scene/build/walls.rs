@@ -170,7 +170,7 @@ pub(super) fn movers<const D: usize>(scene: &Scene, points: &WallPoints<D>) -> V
 }
 
 /// How a wall's material moves, or a body's at the start.
-pub(super) fn rigid_motion<const D: usize>(
+pub(crate) fn rigid_motion<const D: usize>(
     velocity: &Point,
     rotation: Option<&Rotation>,
 ) -> RigidMotion<D> {

@@ -1,12 +1,12 @@
 //! Bodies: where material is at the start, clear of everything else.
 
 use super::Lift;
-use super::geometry::{Region, crossing_edges, cut_below, signed_area};
+use super::geometry::{Region, crossing_edges, signed_area};
 use super::motion::Turning;
 use crate::math::dot;
 use crate::scene::raw::{At, Coordinates, Entry, Length, List, Place, RawBody, RawBox, RawColumn};
 use crate::scene::types::{Body, Dimension, VelocityProfile};
-use crate::shape::Shape;
+use crate::shape::{Shape, cut_below};
 
 /// Most corners of an outline: pairs of edges are compared.
 pub(super) const MOST_CORNERS: usize = 1000;
@@ -47,10 +47,18 @@ impl Lift<'_> {
             self.check_bodies_apart(&entry.place, &region);
         }
         self.filled.push((entry.place.clone(), region));
+        let roundness = match (&raw.circle, &shape) {
+            (Some(_), Shape::Polygon { points }) => {
+                let side = std::f64::consts::TAU / points.len() as f64;
+                side / side.sin()
+            }
+            _ => 1.0,
+        };
         Some(Body {
             name: entry.name.clone(),
             material: material?,
             shape,
+            roundness,
             level: raw.level.as_ref().map(|l| l.value.0),
             velocity: velocity?,
             rotation: rotation?,
@@ -187,7 +195,7 @@ impl Lift<'_> {
                 return None;
             }
         }
-        if let Some((i, j)) = crossing_edges(&points, eps) {
+        if let Some((i, j)) = crossing_edges(&points, true, eps) {
             self.problems.report(
                 &at.place,
                 format!("the edge after point {i} crosses the edge after point {j}"),
@@ -288,7 +296,10 @@ impl Lift<'_> {
                 self.problems.report(
                     place,
                     format!("a body {extent} m wide along {}", Self::axis_name(axis)),
-                    format!("at least numerics.spacing, {spacing} m, along every axis"),
+                    format!(
+                        "at least numerics.spacing, {spacing} m{}, along every axis",
+                        self.of_quality()
+                    ),
                     "enlarge the body or refine numerics.spacing",
                 );
                 return;

@@ -3,6 +3,9 @@
 use super::Lift;
 use crate::scene::raw::{At, RawCircle};
 
+/// Least and largest radius of a circle, in spacings.
+pub(in crate::scene) const CIRCLES: (f64, f64) = (4.0, 300.0);
+
 impl Lift<'_> {
     /// Corners of a circle, anticlockwise: its inside is on their left.
     pub(super) fn circle(&mut self, at: &At<RawCircle>) -> Option<Vec<[f64; 2]>> {
@@ -19,15 +22,12 @@ impl Lift<'_> {
         let radius = at.value.radius.as_ref()?.value.0;
         let spacing = self.spacing?;
         let place = &at.value.radius.as_ref()?.place;
-        if radius < 4.0 * spacing || radius > 300.0 * spacing {
+        let (least, most) = (CIRCLES.0 * spacing, CIRCLES.1 * spacing);
+        if radius < least * (1.0 - 1e-9) || radius > most * (1.0 + 1e-9) {
             self.problems.report(
                 place,
                 format!("{radius} m"),
-                format!(
-                    "4 to 300 spacings, {} to {} m",
-                    4.0 * spacing,
-                    300.0 * spacing
-                ),
+                format!("4 to 300 spacings, {least} to {most} m"),
                 "choose another radius, refine or coarsen numerics.spacing",
             );
             return None;

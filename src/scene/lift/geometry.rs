@@ -147,13 +147,15 @@ pub(super) fn edges(points: &[Flat]) -> impl Iterator<Item = (Flat, Flat)> + Clo
     (0..points.len()).map(|i| (points[i], points[(i + 1) % points.len()]))
 }
 
-/// Whether two edges of a polygon that are not neighbours meet; gives their indices.
-pub(super) fn crossing_edges(points: &[Flat], eps: f64) -> Option<(usize, usize)> {
+/// Whether two edges of an outline that are not neighbours cross; gives their indices. `closed`: an edge leads from the last
+/// point to the first.
+pub(super) fn crossing_edges(points: &[Flat], closed: bool, eps: f64) -> Option<(usize, usize)> {
     let count = points.len();
+    let edges = if closed { count } else { count - 1 };
     let edge = |i: usize| (points[i], points[(i + 1) % count]);
-    for i in 0..count {
-        for j in i + 2..count {
-            let neighbours = i == 0 && j == count - 1;
+    for i in 0..edges {
+        for j in i + 2..edges {
+            let neighbours = closed && i == 0 && j == count - 1;
             if !neighbours && cross(edge(i), edge(j), eps) {
                 return Some((i, j));
             }
@@ -233,23 +235,6 @@ fn inner_point(points: &[Flat]) -> Option<Flat> {
     }
 }
 
-/// The part of a polygon with `direction` . x <= `level`.
-pub(super) fn cut_below(points: &[Flat], direction: Flat, level: f64) -> Vec<Flat> {
-    let height = |p: Flat| p[0] * direction[0] + p[1] * direction[1] - level;
-    let mut kept = Vec::new();
-    for (s, t) in edges(points) {
-        let (hs, ht) = (height(s), height(t));
-        if hs <= 0.0 {
-            kept.push(s);
-        }
-        if (hs <= 0.0) != (ht <= 0.0) {
-            let share = hs / (hs - ht);
-            kept.push([s[0] + share * (t[0] - s[0]), s[1] + share * (t[1] - s[1])]);
-        }
-    }
-    kept
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -272,15 +257,16 @@ mod tests {
 
     #[test]
     fn a_bow_tie_is_not_simple() {
-        assert!(crossing_edges(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]], EPS).is_some());
-        assert!(crossing_edges(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], EPS).is_none());
-    }
-
-    #[test]
-    fn cutting_a_square_at_a_level_leaves_the_part_below() {
-        let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
-        let low = cut_below(&points, [0.0, 1.0], 0.5);
-        assert!((signed_area(&low) - 1.0).abs() < 1e-12);
+        let tie = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+        assert_eq!(crossing_edges(&tie, true, EPS), Some((0, 2)));
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        assert_eq!(crossing_edges(&square, true, EPS), None);
+        // Open, the last point is joined to nothing.
+        let hook = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.5], [0.5, 1.0], [0.8, -1.0]];
+        assert_eq!(crossing_edges(&hook, false, EPS), Some((0, 3)));
+        assert_eq!(crossing_edges(&hook[..4], false, EPS), None);
+        let back = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
+        assert_eq!(crossing_edges(&back, false, EPS), None, "end on start");
     }
 
     #[test]

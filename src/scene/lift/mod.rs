@@ -30,10 +30,13 @@ use super::raw::{
 };
 use super::types::{Dimension, Domain, NamedMaterial, Point, Scene};
 use crate::math::{dot, normalized};
+use crate::units::shown_bound;
+pub(super) use circle::CIRCLES;
 pub(super) use friction::values as preset_values;
 use geometry::Region;
 pub(super) use material::fluid_preset;
 pub(crate) use numerics::MOST_PARTICLES;
+pub(super) use walls::ROWS;
 
 /// The scene, or `None` if a problem was reported.
 pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Option<Scene> {
@@ -353,6 +356,20 @@ impl<'r> Lift<'r> {
             let read = |entry: &'r Entry<T>| Some((entry, entry.value.as_ref()?));
             e.value.0.iter().filter_map(read).collect()
         })
+    }
+
+    /// Says behind a bound that is made of the spacing where another than the file's comes from; empty for the file's.
+    fn of_quality(&self) -> String {
+        let numerics = self.raw.numerics.as_ref().map(|n| &n.value);
+        let quality = numerics.and_then(|n| n.quality.as_ref());
+        match (quality.map(|q| Quality::of_word(q.value)), self.spacing) {
+            (None | Some(Quality::Standard), _) | (_, None) => String::new(),
+            (Some(quality), Some(spacing)) => format!(
+                " (quality = \"{}\" makes it {} m)",
+                quality.name(),
+                shown_bound(spacing)
+            ),
+        }
     }
 
     /// Density at rest of a lifted material [kg/m^3].

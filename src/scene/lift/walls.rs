@@ -2,14 +2,14 @@
 
 use super::Lift;
 use super::faces::plate_places;
-use super::geometry::Region;
+use super::geometry::{Region, crossing_edges};
 use crate::math::{cross, length, normalized, sub};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
 use crate::scene::types::{Dimension, Gate, Point, Slip, Wall, WallGeometry};
 use crate::units::shown_bound;
 
 /// Rows of wall particles: a gate is at least this many spacings deep.
-const ROWS: f64 = 4.0;
+pub(in crate::scene) const ROWS: f64 = 4.0;
 
 /// A wall, as far as bodies must keep clear of it.
 pub(super) enum Solid {
@@ -169,6 +169,15 @@ impl Lift<'_> {
             }
             segments.push((a, b));
         }
+        if let Some((i, j)) = crossing_edges(&points, closed, eps) {
+            self.problems.report(
+                &at.place,
+                format!("the segment after point {i} crosses the segment after point {j}"),
+                "a polyline that does not cross itself; its ends may touch it",
+                "give the points in order along the surface, material on the left (points count from 0), or make two walls of it",
+            );
+            return None;
+        }
         for (corner, [x, y]) in at.value.0.iter().zip(&points) {
             self.check_inside(&corner.place, [*x, *y, 0.0]);
             self.heights.push(self.height([*x, *y, 0.0]));
@@ -257,8 +266,9 @@ impl Lift<'_> {
                 &at.place,
                 format!("{} m", at.value.0),
                 format!(
-                    "at least {} m, four times numerics.spacing",
-                    shown_bound(least)
+                    "at least {} m, four times numerics.spacing{}",
+                    shown_bound(least),
+                    self.of_quality()
                 ),
                 "thicken the gate, leave thickness out, or refine numerics.spacing",
             );
@@ -306,8 +316,9 @@ impl Lift<'_> {
                     shown_bound(if thin.is_nan() { 0.0 } else { thin })
                 ),
                 format!(
-                    "at least {} m, two spacings; in space span is not parallel to from - to",
-                    shown_bound(least)
+                    "at least {} m, two spacings{}; in space span is not parallel to from - to",
+                    shown_bound(least),
+                    self.of_quality()
                 ),
                 "move from and to apart, or refine numerics.spacing",
             );

@@ -7,7 +7,7 @@ table! {
     RawNumerics {
         /// Particle spacing dp: the resolution. Bodies are filled on a lattice of this spacing, the first row half a spacing inside.
         required spacing: Length, in Range::above(0.0);
-        /// Resolution, as the studies in docs/precision.md found it worth its time: spacing is that of "standard".
+        /// Resolution, as the studies in docs/precision.md found it worth its time: spacing is that of "standard". Where a gate's thickness, a circle or a period as given would not fit the other spacing, the nearest that fits is taken.
         optional quality: QualityWord, default "standard";
         /// Smoothing length over particle spacing.
         optional smoothing_ratio: Ratio, in Range::within(1.2, 2.5), default 1.6;

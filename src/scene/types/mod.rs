@@ -118,6 +118,8 @@ pub struct Body {
     pub material: usize,
     /// Region to fill with particles.
     pub shape: Shape,
+    /// Area of a circle over that of the polygon that stands for it in `shape`; 1 of all that is no circle [1].
+    pub roundness: f64,
     /// Reservoirs: fill only below this height along "up" (against gravity's main axis) [m].
     pub level: Option<f64>,
     /// Initial velocity [m/s].
