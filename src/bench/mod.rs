@@ -5,6 +5,8 @@
 //!
 //! [`precision`] asks what accuracy costs: error against CPU time, and docs/precision.md.
 //!
+//! [`phases`] asks what several phases cost a scene without them, and docs/phases.md.
+//!
 //! [`units`] times each part of a step and of what surrounds it, so that two commits can be compared.
 //!
 //! It prints nothing: `cli` shows progress. Times are CPU times wherever they can be, medians of repetitions, and what is
@@ -14,6 +16,7 @@ pub mod clock;
 pub mod kernels;
 pub mod machine;
 pub mod page;
+pub mod phases;
 pub mod precision;
 pub mod roofline;
 pub mod scenes;

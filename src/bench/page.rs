@@ -2,12 +2,13 @@
 
 mod binds;
 mod peers;
+pub mod phases;
 mod runs;
 mod sweeps;
 
-use super::SpeedRun;
 use super::kernels::Kernels;
 use super::scenes::Stretch;
+use super::{Machine, SpeedRun};
 use crate::solver::Pass;
 use crate::validate::Verdict;
 use crate::validate::report::number;
@@ -210,28 +211,32 @@ fn opening(run: &SpeedRun) -> String {
     } else {
         ""
     };
-    let m = &run.machine;
+    format!(
+        "{MADE}\n# Performance\n\n{warning}Where the time goes, measured by one command on {}.\n\n{}",
+        where_and_when(&run.machine),
+        table(&["measured", "asked", "came out", "verdict"], &rows)
+    )
+}
+
+/// The machine, its load, the program and the day.
+fn where_and_when(m: &Machine) -> String {
+    let cores = if m.cores == 1 { "core" } else { "cores" };
     let load = m.load.map_or(String::new(), |(start, end)| {
         format!(", load {start:.1} at the start and {end:.1} at the end (1 is this measurement)")
     });
+    let commit = m
+        .commit
+        .as_ref()
+        .map_or(String::new(), |c| format!(", commit {c}"));
     format!(
-        "{MADE}\n# Performance\n\n{warning}Where the time goes, measured by one command on {} {} ({}, AVX2 {}){load}, \
-         version {}, sources {}{}, {}.\n\n{}",
+        "{} {cores} of {} ({}, AVX2 {}){load}, version {}, sources {}{commit}, {}",
         m.cores,
-        if m.cores == 1 {
-            format!("core of {}", m.processor)
-        } else {
-            format!("cores of {}", m.processor)
-        },
+        m.processor,
         m.system,
         if m.avx2 { "on" } else { "off" },
         m.version,
         m.sources,
-        m.commit
-            .as_ref()
-            .map_or(String::new(), |c| format!(", commit {c}")),
         m.date,
-        table(&["measured", "asked", "came out", "verdict"], &rows)
     )
 }
 

@@ -5,16 +5,18 @@
 
 mod against;
 mod column;
+mod phases;
 mod threads;
 
 pub use against::{AgainstPaperA, against_paper_a};
 pub use column::{Rest, column, rest, sizes};
+pub use phases::{Phases, phases};
 pub use threads::{Threads, threads};
 
 use serde::{Deserialize, Serialize};
 
 use super::Error;
-use super::clock::timed;
+use super::clock::{median, timed};
 use crate::component::Component;
 use crate::scene;
 use crate::validate::template::Template;
@@ -140,5 +142,46 @@ fn template(text: &str, name: &str) -> Result<Template, Error> {
     Template::new(text).map_err(|why| Error::Scene {
         scene: name.to_owned(),
         why,
+    })
+}
+
+/// What [`in_turns`] found.
+struct Turns {
+    /// Each scene, with the medians of its steps.
+    stretches: Vec<Stretch>,
+    /// Where each scene is at the end.
+    ends: Vec<Runner>,
+}
+
+/// Steps scenes over `simulated` seconds in communication steps of 10 ms, one after the other in each, all of it `repeats`
+/// times: of each communication step the median counts.
+fn in_turns(
+    scenes: &[(&str, Template)],
+    simulated: f64,
+    repeats: usize,
+    watch: &mut dyn FnMut(f64),
+) -> Result<Turns, Error> {
+    let steps = (simulated / 0.01).round().max(1.0) as usize;
+    let mut all: Vec<Vec<Runner>> = Vec::new();
+    for repeat in 0..repeats.max(1) {
+        let runners = scenes.iter().map(|(name, scene)| Runner::new(name, scene));
+        let mut runners = runners.collect::<Result<Vec<_>, _>>()?;
+        for step in 0..steps {
+            for runner in &mut runners {
+                runner.step(0.01)?;
+            }
+            watch((repeat * steps + step + 1) as f64 / (repeats.max(1) * steps) as f64);
+        }
+        all.push(runners);
+    }
+    let of = |k: usize| {
+        let mut stretch = all[0][k].stretch();
+        let at = |s: usize| median(&all.iter().map(|r| r[k].cpu[s]).collect::<Vec<_>>());
+        stretch.cpu = (0..steps).map(at).sum();
+        stretch
+    };
+    Ok(Turns {
+        stretches: (0..scenes.len()).map(of).collect(),
+        ends: all.swap_remove(0),
     })
 }

@@ -25,10 +25,29 @@ enum What {
     Speed(Speed),
     /// Error against CPU time over resolutions and numerical choices, with the Pareto front
     Precision(Precision),
+    /// What several phases cost a scene that has none of them
+    Phases(PhasesArgs),
     /// Each part by itself: search, sweeps, equation of state, solve, step, save, restore, outputs, log, publish
     Units(Units),
     /// Two kept runs of `bench units`, of two commits: each part's time and the ratio
     Compare(Compare),
+}
+
+/// What may be typed after `sandgate bench phases`.
+#[derive(Debug, clap::Args)]
+struct PhasesArgs {
+    /// Short stretches that take seconds: to see that all works, not to judge
+    #[arg(long)]
+    quick: bool,
+    /// Time nothing; write the page from the kept run
+    #[arg(long, requires = "page")]
+    only_page: bool,
+    /// Folder in which the run is kept, as phases.json
+    #[arg(long, value_name = "DIR", default_value = "benches/runs")]
+    out: PathBuf,
+    /// Page to write from the run, as docs/phases.md
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
 }
 
 /// What may be typed after `sandgate bench units`.
@@ -136,6 +155,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     match &args.what {
         What::Speed(args) => speed(args),
         What::Precision(args) => precision(args),
+        What::Phases(args) => phases(args),
         What::Units(args) => units(args),
         What::Compare(args) => {
             let first = bench::stored(&args.first)?;
@@ -143,6 +163,41 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             say(bench::units::table(&first, Some(&second)).trim_end())
         }
     }
+}
+
+fn phases(args: &PhasesArgs) -> Result<(), CliError> {
+    let kept = args.out.join("phases.json");
+    let run = if args.only_page {
+        bench::stored(&kept)?
+    } else {
+        let mut display = Display::new();
+        let run = bench::phases::run(args.quick, &mut |share| {
+            display.show(&Progress {
+                share,
+                what: "the column beside other phases".to_owned(),
+            });
+        });
+        display.bar.finish_and_clear();
+        let run = run?;
+        bench::store(&kept, &run)?;
+        run
+    };
+    let alone = run.phases.stretches[0].cost();
+    let mut lines: Vec<String> = Vec::new();
+    for stretch in &run.phases.stretches {
+        lines.push(format!(
+            "{:55} {:>6.2} CPU s a simulated s, {:.3} times sand alone",
+            stretch.name,
+            stretch.cost(),
+            stretch.cost() / alone
+        ));
+    }
+    lines.push(format!("run in {}", kept.display()));
+    if let Some(page) = &args.page {
+        bench::write(page, &page::phases::text(&run))?;
+        lines.push(format!("page in {}", page.display()));
+    }
+    say(&lines.join("\n"))
 }
 
 fn units(args: &Units) -> Result<(), CliError> {

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use sandgate::bench::phases::PhasesRun;
 use sandgate::bench::precision::{self, PrecisionRun};
 use sandgate::bench::{SpeedRun, page, stored};
 
@@ -92,6 +93,33 @@ fn the_page_in_the_repository_is_that_of_the_run_in_it() {
         text,
         page::text(&run),
         "docs/performance.md is stale; run: sandgate bench speed --only-page --page docs/performance.md"
+    );
+}
+
+#[test]
+fn phases_that_a_scene_lacks_change_no_bit_of_it() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let (code, out, error) = bench(&["phases", "--quick", "--page", "page.md"], folder.path());
+    assert_eq!(code, Some(0), "{error}");
+    let run: PhasesRun = stored(&folder.path().join("benches/runs/phases.json")).unwrap();
+    assert!(run.quick && run.phases.same);
+    let [alone, _, unused, tub, ..] = &run.phases.stretches[..] else {
+        panic!("{run:?}");
+    };
+    assert_eq!(alone.particles, unused.particles);
+    assert_eq!(alone.particles + 50, tub.particles);
+    let text = std::fs::read_to_string(folder.path().join("page.md")).unwrap();
+    assert_eq!(text, page::phases::text(&run));
+    for stretch in &run.phases.stretches {
+        assert!(out.contains(&stretch.name) && text.contains(&stretch.name));
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let run: PhasesRun = stored(&root.join("benches/runs/phases.json")).unwrap();
+    assert!(!run.quick && run.phases.same);
+    assert_eq!(
+        std::fs::read_to_string(root.join("docs/phases.md")).unwrap(),
+        page::phases::text(&run),
+        "docs/phases.md is stale; run: sandgate bench phases --only-page --page docs/phases.md"
     );
 }
 

@@ -5,7 +5,7 @@ use crate::bench::SpeedRun;
 use crate::bench::scenes::Stretch;
 use crate::validate::report::number;
 
-fn stretch_row(s: &Stretch) -> Vec<String> {
+pub(super) fn stretch_row(s: &Stretch) -> Vec<String> {
     vec![
         s.name.clone(),
         s.particles.to_string(),
@@ -19,7 +19,7 @@ fn stretch_row(s: &Stretch) -> Vec<String> {
     ]
 }
 
-const STRETCH: [&str; 9] = [
+pub(super) const STRETCH: [&str; 9] = [
     "",
     "particles",
     "simulated [s]",

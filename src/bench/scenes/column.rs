@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 use toml::Value;
 
-use super::{COLUMN, Runner, Stretch, template};
+use super::{COLUMN, Runner, Stretch, in_turns, template};
 use crate::bench::Error;
 use crate::bench::clock::median;
+use crate::validate::template::Template;
 
 /// A name, and keys with values.
 type Setting<'a> = (&'a str, &'a [(&'a str, Value)]);
@@ -32,32 +33,13 @@ pub fn column(
         ("plain cap", &only_capped),
         ("plain cap, sleep off", &both),
     ];
-    let steps = (simulated / 0.01).round().max(1.0) as usize;
-    let mut all: Vec<Vec<Runner>> = Vec::new();
-    for repeat in 0..repeats.max(1) {
-        let mut runners = Vec::new();
-        for (name, edits) in &settings {
-            let mut scene = template(COLUMN, name)?;
-            for (key, value) in *edits {
-                scene = scene.with(key, value.clone());
-            }
-            runners.push(Runner::new(name, &scene)?);
-        }
-        for step in 0..steps {
-            for runner in &mut runners {
-                runner.step(0.01)?;
-            }
-            watch((repeat * steps + step + 1) as f64 / (repeats.max(1) * steps) as f64);
-        }
-        all.push(runners);
-    }
-    let of = |k: usize| {
-        let mut stretch = all[0][k].stretch();
-        let at = |s: usize| median(&all.iter().map(|r| r[k].cpu[s]).collect::<Vec<_>>());
-        stretch.cpu = (0..steps).map(at).sum();
-        stretch
-    };
-    Ok((0..settings.len()).map(of).collect())
+    let edited = settings.iter().map(|(name, edits)| {
+        let with = |scene: Template, (key, value): &(&str, Value)| scene.with(key, value.clone());
+        let scene = edits.iter().fold(template(COLUMN, name)?, with);
+        Ok((*name, scene))
+    });
+    let scenes = edited.collect::<Result<Vec<_>, Error>>()?;
+    Ok(in_turns(&scenes, simulated, repeats, watch)?.stretches)
 }
 
 /// What the pile costs once it rests.

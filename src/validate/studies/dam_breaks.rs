@@ -18,8 +18,9 @@ friction):\n\n\
     dry: h = (2 c - x/t)^2/(9 g), c = sqrt(g H);   wet: a plateau of 0.1426 m behind a bore of 1.641 m/s.\n\n\
 Water falls from rest at first, which those equations do not know: depths come later than theirs by a time that the fall takes, the same \
 for good. It stands beside each place as its lag, (x - x_exact)/(dx/dt): a scheme that is at fault lags more and more.\n\n\
-Whether the scheme has a part in what is left is told by the change of each number from the coarser to the finer spacing, and, at the \
-coarser one, by another start and by 1.5 times the sound speed.",
+Whether the scheme has a part in what is left is told by the change of each number from one spacing to the next (30 to 60, and for 200 from 60 \
+to 200 particles over the depth), and, at the coarsest, by another start and by 1.5 times the sound speed. The finest runs have the first \
+2 m of the reservoir, which is what moves until they end at 6 sqrt(H/g).",
     members,
     analyse,
 };
@@ -28,12 +29,16 @@ const DEPTH: f64 = 0.3;
 const GRAVITY: f64 = 9.81;
 /// Times of the comparison [sqrt(H/g)].
 const TIMES: [f64; 3] = [6.0, 9.0, 12.0];
+/// Length of the reservoir [m]: the drop of the surface, which runs back at sqrt(g H), does not reach its end.
 const RESERVOIR: f64 = 4.0;
+/// The same in runs that end at the first of [`TIMES`].
+const SHORT_RESERVOIR: f64 = 2.0;
 const WET: f64 = 0.05;
 /// Plateau [m], its speed and that of the bore [m/s] for 0.30 m over 0.05 m: Stoker (1957), solved by hand.
 const PLATEAU: (f64, f64, f64) = (0.1426, 1.066, 1.641);
 const TEMPLATE: &str = include_str!("../../../cases/validation/dam_break.toml");
 const FIRST_FOOT: f64 = -3.9;
+const SHORT_FIRST_FOOT: f64 = -1.9;
 const FEET: f64 = 0.02;
 const SURFACE: &str = "gauge.surface.depth";
 
@@ -43,13 +48,45 @@ fn unit() -> f64 {
 }
 
 /// Particles over the depth.
-fn rows(effort: Effort) -> [u32; 2] {
-    effort.pick([30, 60], [12, 18])
+fn rows(effort: Effort) -> [u32; 3] {
+    effort.pick([30, 60, 200], [12, 18, 24])
+}
+
+/// Times that runs with so many particles over the depth are compared at [sqrt(H/g)]: the finest would cost 40 times the next.
+fn times(effort: Effort, over_depth: u32) -> &'static [f64] {
+    let [.., finest] = rows(effort);
+    if over_depth == finest {
+        &TIMES[..1]
+    } else {
+        &TIMES
+    }
+}
+
+/// The last of them.
+fn until(effort: Effort, over_depth: u32) -> f64 {
+    times(effort, over_depth)
+        .iter()
+        .copied()
+        .fold(0.0, f64::max)
+}
+
+/// Length of the reservoir and the first foot of the surface's profile [m].
+fn reservoir(until: f64) -> (f64, f64) {
+    if until > TIMES[0] {
+        (RESERVOIR, FIRST_FOOT)
+    } else {
+        (SHORT_RESERVOIR, SHORT_FIRST_FOOT)
+    }
 }
 
 /// End of the bed [m]: out of reach of the water.
-fn end(wet: bool) -> f64 {
-    if wet { 4.2 } else { 7.8 }
+fn end(wet: bool, until: f64) -> f64 {
+    match (wet, until > TIMES[0]) {
+        (true, true) => 4.2,
+        (true, false) => 2.4,
+        (false, true) => 7.8,
+        (false, false) => 4.0,
+    }
 }
 
 /// What is changed at the coarser spacing.
@@ -59,28 +96,30 @@ fn bed(wet: bool) -> &'static str {
     if wet { "wet" } else { "dry" }
 }
 
-fn scene(rows: u32, wet: bool) -> Result<Template, String> {
+/// `until` in sqrt(H/g).
+fn scene(rows: u32, wet: bool, until: f64) -> Result<Template, String> {
     let dp = DEPTH / f64::from(rows);
-    let end = end(wet);
+    let end = end(wet, until);
+    let (reservoir, first_foot) = reservoir(until);
     let mut template = Template::new(TEMPLATE)?
         .with("numerics.spacing", dp)
-        .with("domain.lower", point(-RESERVOIR - 0.1, -0.1))
+        .with("domain.lower", point(-reservoir - 0.1, -0.1))
         .with("domain.upper", point(end + 0.1, 0.6))
         .with(
             "bodies.reservoir.box",
-            rectangle([-RESERVOIR, 0.0], [0.0, DEPTH]),
+            rectangle([-reservoir, 0.0], [0.0, DEPTH]),
         )
         .with("run.step", 0.5 * unit())
-        .with("run.until", TIMES[2] * unit())
-        .with("gauges.surface.from", point(FIRST_FOOT, 0.0))
+        .with("run.until", until * unit())
+        .with("gauges.surface.from", point(first_foot, 0.0))
         .with("gauges.surface.to", point(end - 0.1, 0.0))
         .with(
             "gauges.surface.count",
-            ((end - 0.1 - FIRST_FOOT) / FEET).round() as i64 + 1,
+            ((end - 0.1 - first_foot) / FEET).round() as i64 + 1,
         )
         .with(
             "walls.tank.polyline",
-            points(&[[-RESERVOIR, 0.6], [-RESERVOIR, 0.0], [end, 0.0], [end, 0.6]]),
+            points(&[[-reservoir, 0.6], [-reservoir, 0.0], [end, 0.0], [end, 0.6]]),
         );
     let bed = (WET / dp).round() * dp;
     template = if wet {
@@ -101,13 +140,14 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
     let mut members = Vec::new();
     for rows in rows(effort) {
         for wet in [false, true] {
-            members.push(member(wet, &rows.to_string(), scene(rows, wet)?)?);
+            let scene = scene(rows, wet, until(effort, rows))?;
+            members.push(member(wet, &rows.to_string(), scene)?);
         }
     }
-    let [coarse, _] = rows(effort);
+    let [coarse, ..] = rows(effort);
     for wet in [false, true] {
         for choice in CHANGED {
-            let changed = choice.change(scene(coarse, wet)?, (GRAVITY * DEPTH).sqrt());
+            let changed = choice.change(scene(coarse, wet, TIMES[2])?, (GRAVITY * DEPTH).sqrt());
             members.push(member(wet, choice.name(), changed)?);
         }
     }
@@ -118,7 +158,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
     let mut report = Report::default();
     let mut curves: [Vec<Curve>; 2] = [Vec::new(), Vec::new()];
     for (k, rows) in rows(results.effort).into_iter().enumerate() {
-        for count in TIMES {
+        for &count in times(results.effort, rows) {
             let what = format!("H/dp {rows}, {count} sqrt(H/g)");
             let [dry, wet] =
                 [false, true].map(|wet| Found::new(results, wet, rows, count * unit()));
@@ -145,7 +185,7 @@ fn analyse(results: &Results) -> Result<Report, String> {
     for ((mut curves, exact), (name, what)) in curves.into_iter().zip(exact).zip(names) {
         for count in TIMES {
             let points = (0..=600).map(|k| FIRST_FOOT + FEET * f64::from(k));
-            let points = points.filter(|x| *x <= end(name == "wet") - 0.1);
+            let points = points.filter(|x| *x <= end(name == "wet", TIMES[2]) - 0.1);
             let points = points.map(|x| (x, exact(x, count * unit())));
             let label = if count == TIMES[0] { "exact" } else { "" };
             curves.push(Curve::new(label, points.collect(), Look::Thin, 6));

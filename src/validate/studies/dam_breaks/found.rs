@@ -1,21 +1,27 @@
 //! Surfaces of the runs, and how far they are from the exact ones.
 
-use super::{CHANGED, DEPTH, FEET, FIRST_FOOT, GRAVITY, PLATEAU, SURFACE, WET, bed, unit};
+use super::{CHANGED, DEPTH, FEET, GRAVITY, PLATEAU, SURFACE, WET, bed, reservoir, unit, until};
 use crate::validate::statistics::{mean, rms};
-use crate::validate::studies::choices::{Choice, change};
+use crate::validate::studies::choices::change;
 use crate::validate::{Metric, Recording, Results, Rule};
 
 /// Places and depths [m].
 type Surface = Vec<(f64, f64)>;
 
-/// Place and depth at a time [s].
-fn surface(recording: &Recording, time: f64) -> Option<Surface> {
+/// Place and depth at a time [s], from the first foot on.
+fn surface(recording: &Recording, first_foot: f64, time: f64) -> Option<Surface> {
     let depths = recording.values_at(SURFACE, time)?;
     let rows = depths.iter().enumerate();
     Some(
-        rows.map(|(k, h)| (FIRST_FOOT + FEET * k as f64, *h))
+        rows.map(|(k, h)| (first_foot + FEET * k as f64, *h))
             .collect(),
     )
+}
+
+/// Depth at one of its places [m].
+fn depth_at(surface: &[(f64, f64)], x: f64) -> Option<f64> {
+    let place = surface.iter().find(|p| (p.0 - x).abs() < 0.5 * FEET)?;
+    Some(place.1)
 }
 
 /// Outermost place with at least this depth [m].
@@ -53,41 +59,47 @@ pub(super) fn stoker(x: f64, t: f64) -> f64 {
 pub(super) struct Found {
     time: f64,
     pub(super) judged: Option<Surface>,
-    coarse: Option<Surface>,
-    others: [Option<Surface>; 3],
+    /// Before and after a change of spacing, of start and of sound speed.
+    changed: [[Option<Surface>; 2]; 3],
 }
 
 impl Found {
     pub(super) fn new(results: &Results, wet: bool, rows: u32, time: f64) -> Self {
-        let of = |name: &str| {
+        let effort = results.effort;
+        let of = |rows: u32, name: &str| {
             let recording = results.finished(&format!("{}_{name}", bed(wet)))?;
-            surface(recording, time)
+            let (_, first_foot) = reservoir(until(effort, rows));
+            surface(recording, first_foot, time)
         };
-        let [coarse, fine] = super::rows(results.effort).map(|rows| rows.to_string());
-        let [seed, sound_speed] = CHANGED.map(Choice::name);
+        let at = |rows: u32| of(rows, &rows.to_string());
+        let [coarse, fine, finest] = super::rows(effort);
+        let finer = if rows == finest {
+            [fine, finest]
+        } else {
+            [coarse, fine]
+        };
+        let [seed, sound_speed] = CHANGED.map(|choice| [at(coarse), of(coarse, choice.name())]);
         Self {
             time,
-            judged: of(&rows.to_string()),
-            coarse: of(&coarse),
-            others: [&fine, seed, sound_speed].map(of),
+            judged: at(rows),
+            changed: [finer.map(at), seed, sound_speed],
         }
     }
 
     /// A number of the surface, and the shares by which what it depends on changes it.
     fn number(&self, of: impl Fn(&Surface) -> Option<f64>) -> (Option<f64>, [Option<f64>; 3]) {
-        let base = self.coarse.as_ref().and_then(&of);
-        let changes = self.others.each_ref();
-        let changes = changes.map(|other| change(base, other.as_ref().and_then(&of)));
-        (self.judged.as_ref().and_then(of), changes)
+        let of = |surface: &Option<Surface>| surface.as_ref().and_then(&of);
+        let changes = self.changed.each_ref();
+        let changes = changes.map(|[before, after]| change(of(before), of(after)));
+        (of(&self.judged), changes)
     }
 
     /// Root mean square of the difference from another depth between 0.1 H and 0.8 H of Ritter's, over H.
-    fn off(&self, surface: &Surface, depth: impl Fn(usize) -> Option<f64>) -> Option<f64> {
+    fn off(&self, surface: &Surface, depth: impl Fn(f64) -> Option<f64>) -> Option<f64> {
         let inside = surface
             .iter()
-            .enumerate()
-            .filter(|(_, p)| (0.1 * DEPTH..0.8 * DEPTH).contains(&ritter(p.0, self.time)));
-        let errors = inside.map(|(k, p)| Some((p.1 - depth(k)?) / DEPTH));
+            .filter(|p| (0.1 * DEPTH..0.8 * DEPTH).contains(&ritter(p.0, self.time)));
+        let errors = inside.map(|p| Some((p.1 - depth(p.0)?) / DEPTH));
         rms(&errors.collect::<Option<Vec<_>>>()?)
     }
 
@@ -118,10 +130,10 @@ impl Found {
     pub(super) fn dry_metrics(&self, what: &str) -> Vec<Metric> {
         let c = (GRAVITY * DEPTH).sqrt();
         let judged = self.judged.as_ref();
-        let error = judged.and_then(|s| self.off(s, |k| Some(ritter(s[k].0, self.time))));
-        let changes = self.others.each_ref().map(|other| {
-            let other = other.as_ref()?;
-            self.off(self.coarse.as_ref()?, |k| Some(other.get(k)?.1))
+        let error = judged.and_then(|s| self.off(s, |x| Some(ritter(x, self.time))));
+        let changes = self.changed.each_ref().map(|[before, after]| {
+            let after = after.as_ref()?;
+            self.off(before.as_ref()?, |x| depth_at(after, x))
         });
         let profile = Metric::new(
             format!("dry, {what}: profile between 0.1 H and 0.8 H, rms over H"),
