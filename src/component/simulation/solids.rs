@@ -65,15 +65,15 @@ fn plate<const D: usize>(gate: &Gate, opening: f64) -> Solid<D> {
     let (from, to) = (narrow::<D>(&gate.from), narrow::<D>(&gate.to));
     let way = sub(&to, &from);
     let span = narrow::<D>(&gate.span);
-    let mut normal: Vector<D> = [0.0; D];
-    if D == 2 {
-        (normal[0], normal[1]) = (-way[1], way[0]);
-    } else {
-        for k in 0..D {
+    // Towards the material: in the plane to the left of the way, in space span x way.
+    let normal: Vector<D> = std::array::from_fn(|k| match (D, k) {
+        (2, 0) => -way[1],
+        (2, _) => way[0],
+        _ => {
             let (a, b) = ((k + 1) % D, (k + 2) % D);
-            normal[k] = span[a] * way[b] - span[b] * way[a];
+            span[a] * way[b] - span[b] * way[a]
         }
-    }
+    });
     let back = scale(-gate.thickness / norm(&normal), &normal);
     let left = scale(1.0 - opening, &way);
     Solid::Block {
