@@ -153,9 +153,7 @@ fn with_scene(library: &Path, scene: &Scene) -> Result<(Platform, Vec<u8>), Erro
     };
     match slot::fill(&mut bytes, &scene.source) {
         Ok(()) if !library::says(&bytes, library::BUILT_FROM) => Err(wrong(
-            "it was built from other sources than this program, so it would refuse the description packed with it; build both \
-             from the same"
-                .to_owned(),
+            "it was built from other sources than this program and would refuse the description packed with it".to_owned(),
         )),
         Ok(()) => Ok((platform, bytes)),
         Err(SlotError::TooLong(found)) => Err(Error::SceneTooLong {
