@@ -1,5 +1,9 @@
 //! A gate's plate: a rigid slab that slides along its own length and vanishes behind the end it retracts to.
 
+mod corners;
+
+pub use corners::Meets;
+
 use super::points::ROWS;
 use super::wall_points::WallPoints;
 use crate::math::{Vector, add, dot, norm, scale, sub};
@@ -16,17 +20,8 @@ struct Point<const D: usize> {
     offset: Vector<D>,
     /// Group that bears what is pushed on it.
     group: u16,
-}
-
-/// What a shut plate meets at one of its ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Meets {
-    /// Nothing, or no corner to fill.
-    Nothing,
-    /// A wall that stands across it: the corner is the plate's.
-    Corner,
-    /// A wall of this group whose face goes on from the plate's: what fills its edge bears for it.
-    Face(u16),
+    /// Whether it stays where it is while the plate slides, and is hidden when the plate has left it.
+    stays: bool,
 }
 
 /// Geometry of a plate: face from `from` along `axis`, body behind it.
@@ -44,6 +39,8 @@ pub struct Plate<const D: usize> {
     /// Spacing of points along the axis [m].
     step: f64,
     thickness: f64,
+    /// Points along the axis, behind each other and across.
+    count: [usize; 3],
     /// In space: direction and length of the extrusion [m].
     across: Option<(Vector<D>, f64)>,
     group: u16,
@@ -84,102 +81,46 @@ impl<const D: usize> Plate<D> {
             (norm(span) / spacing).round().max(1.0) as usize
         };
         let step = length / along as f64;
-        let mut points = Vec::new();
-        for i in 0..along {
-            for k in 0..deep {
-                for m in 0..wide {
-                    let mut offset = scale(-(k as f64 + 0.5) * thickness / deep as f64, &normal);
-                    if D == 3 {
-                        offset = add(&offset, &scale((m as f64 + 0.5) / wide as f64, span));
-                    }
-                    let along = (i as f64 + 0.5) * step;
-                    points.push(Point {
-                        along,
-                        offset,
-                        group,
-                    });
-                }
-            }
-        }
-        Self {
+        let mut plate = Self {
             from: ends[0],
             axis,
             normal,
             length,
             max_speed,
-            points,
+            points: Vec::new(),
             step,
             thickness,
+            count: [along, deep, wide],
             across: (D == 3).then(|| (scale(1.0 / norm(span), span), norm(span))),
             group,
             first: 0,
-        }
-    }
-
-    /// Where a shut plate meets the end of a wall, the two bodies touch at an edge, and a fluid seeps through between them: fills
-    /// what lies beyond the plate's ends, as far as `is_free`. Beyond the far end it stays until the plate has left it; beyond the
-    /// leading edge it comes out of the edge as that closes the last of the way, and goes as it opens. At an end that is not known to
-    /// meet anything, walls that it meets at no more than its edge are looked for: `stands` says where something does.
-    pub fn fill_corners(
-        &mut self,
-        ends: [Meets; 2],
-        stands: impl Fn(&Vector<D>) -> bool,
-        is_free: impl Fn(&Vector<D>) -> bool,
-    ) {
-        let first = 0.5 * self.step;
-        let across = self.points.iter().filter(|p| p.along == first);
-        let across: Vec<Vector<D>> = across.map(|p| p.offset).collect();
-        let mut filled = Vec::new();
-        for (end, meets) in ends.into_iter().enumerate() {
-            for offset in &across {
-                let group = match meets {
-                    Meets::Face(group) => group,
-                    Meets::Nothing if !self.meets_at_edge(end, offset, &stands) => continue,
-                    Meets::Corner | Meets::Nothing => self.group,
-                };
-                for row in 0..ROWS {
-                    let along = self.beyond(end, row as f64 + 0.5);
-                    if is_free(&self.at(along, offset)) {
-                        filled.push(Point {
-                            along,
-                            offset: *offset,
-                            group,
-                        });
-                    }
-                }
+        };
+        for (i, k) in (0..along).flat_map(|i| (0..deep).map(move |k| (i, k))) {
+            for m in 0..wide {
+                plate.points.push(Point {
+                    along: (i as f64 + 0.5) * step,
+                    offset: plate.offset(k, m as f64 + 0.5),
+                    group,
+                    stays: false,
+                });
             }
         }
-        self.points.extend(filled);
+        plate
     }
 
-    /// Coordinate along the axis so many steps beyond an end [m].
-    fn beyond(&self, end: usize, steps: f64) -> f64 {
-        if end == 0 {
-            -steps * self.step
-        } else {
-            self.length + steps * self.step
-        }
+    /// Off the axis: in a row behind the face, and in space so many steps from the side where it begins [m].
+    fn offset(&self, row: usize, steps: f64) -> Vector<D> {
+        let [_, deep, wide] = self.count;
+        let behind = -(row as f64 + 0.5) * self.thickness / deep as f64;
+        let offset = scale(behind, &self.normal);
+        self.across.map_or(offset, |(u, width)| {
+            add(&offset, &scale(steps * width / wide as f64, &u))
+        })
     }
 
     /// Place of a shut plate's point.
     fn at(&self, along: f64, offset: &Vector<D>) -> Vector<D> {
         add(&add(&self.from, &scale(along, &self.axis)), offset)
-    }
-
-    /// Whether something stands across from the plate's edge, which it meets there and nowhere else.
-    fn meets_at_edge(
-        &self,
-        end: usize,
-        offset: &Vector<D>,
-        stands: &impl Fn(&Vector<D>) -> bool,
-    ) -> bool {
-        // On the face, where this line across the plate has its end.
-        let on_face = sub(offset, &scale(dot(offset, &self.normal), &self.normal));
-        let place = |steps: f64, before: f64| {
-            let x = self.at(self.beyond(end, steps), &on_face);
-            add(&x, &scale(before * self.step, &self.normal))
-        };
-        stands(&place(0.5, 0.5)) && !stands(&place(-0.5, 0.5)) && !stands(&place(0.5, -0.5))
     }
 
     /// Where its points are when it is shut [m].
@@ -219,17 +160,21 @@ impl<const D: usize> Plate<D> {
         let velocity = self.velocity(rate);
         for (n, point) in self.points.iter().enumerate() {
             let u = point.along;
-            let stays = u > self.length;
-            let s = if stays { u } else { opening * self.length + u };
+            let moved = opening * self.length;
+            let s = if point.stays { u } else { moved + u };
             let i = self.first + n;
-            walls.position[i] = add(&add(&self.from, &scale(s, &self.axis)), &point.offset);
-            walls.velocity[i] = if stays { [0.0; D] } else { velocity };
+            walls.position[i] = self.at(s, &point.offset);
+            walls.velocity[i] = if point.stays { [0.0; D] } else { velocity };
             // What has slid past the end is hidden, the last point by its share; of that, rounding is nothing. So is what fills the
-            // corner at the leading edge and is in the opening.
-            let share = if stays {
+            // corner at the leading edge and is in the opening, and what the plate has left.
+            let share = if u > self.length {
                 (1.0 - opening) * self.length / (ROWS as f64 * self.step)
             } else {
-                let left = if u < 0.0 { -s } else { self.length - s };
+                let left = match (point.stays, u < 0.0) {
+                    (true, _) => u - moved,
+                    (false, true) => -s,
+                    (false, false) => self.length - s,
+                };
                 left / self.step + 0.5
             };
             let share = share.clamp(0.0, 1.0);

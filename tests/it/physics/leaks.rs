@@ -211,6 +211,44 @@ fn boxes_in_space_and_rings_of_them_leave_no_gap() {
     }
 }
 
+/// In space an upright gate whose sides and foot share no more than edges with the boxes of a channel: shut, a third open and shut again.
+#[test]
+fn a_gate_in_space_leaves_no_gap_at_its_sides() {
+    let wall = |name: &str, lower: &str, upper: &str| {
+        format!("[walls.{name}]\nbox = {{ lower = [{lower}], upper = [{upper}] }}\n")
+    };
+    let channel = [
+        wall("floor", "0, 0, -0.08", "0.08, 0.06, 0"),
+        wall("a", "-0.08, 0, 0", "0, 0.06, 0.15"),
+        wall("c", "0, -0.08, 0", "0.08, 0, 0.15"),
+        wall("d", "0, 0.06, 0", "0.08, 0.14, 0.15"),
+    ];
+    let text = format!(
+        "name = \"closed\"\ndimension = 3\n[domain]\nlower = [-0.3, -0.3, -0.6]\nupper = [0.6, 0.4, 0.4]\n\
+         [numerics]\nspacing = \"10 mm\"\n[materials.filling]\n{WATER}\n[bodies.filling]\nmaterial = \"filling\"\n\
+         box = {{ lower = [0, 0, 0], upper = [0.08, 0.06, 0.1] }}\n{}\
+         [gates.g]\nfrom = [0.08, 0.06, 0]\nto = [0.08, 0.06, 0.15]\nspan = [0, -0.06, 0]\nmax_speed = 0.5\n\
+         [outflows.o]\nlower = [0.09, -0.3, -0.6]\nupper = [0.6, 0.4, 0.4]\n\
+         [outflows.p]\nlower = [-0.3, -0.3, -0.6]\nupper = [0.09, 0.4, -0.02]\n\
+         [outflows.q]\nlower = [-0.3, -0.3, -0.02]\nupper = [0.09, -0.01, 0.4]\n\
+         [outflows.r]\nlower = [-0.3, 0.07, -0.02]\nupper = [0.09, 0.4, 0.4]\n\
+         [run]\nstep = \"10 ms\"\nuntil = \"0.8 s\"\n",
+        channel.concat()
+    );
+    let mut unit = Unit::new(&scene::parse("closed", &text).unwrap());
+    unit.run_to(0.3);
+    assert_eq!(unit.get("mass.outflow"), 0.0);
+    unit.set("gate.g.opening", 0.3);
+    unit.run_to(0.36);
+    unit.set("gate.g.opening", 0.0);
+    unit.run_to(0.5);
+    let left = unit.get("mass.present");
+    println!("left {left} kg of {} kg", unit.component.ledger().initial);
+    assert!(left < 0.95 * unit.component.ledger().initial && left > 0.1);
+    unit.run_to(0.8);
+    assert_eq!(unit.get("mass.present"), left);
+}
+
 /// A block that stands on a floor bears along its side what water pushes on it (rho g h^2/2), and the floor nothing of it: the face
 /// it stands on is nobody's. Coarse, 16 rows: 1.5 %.
 #[test]
