@@ -222,6 +222,7 @@ pub(crate) extern "C" fn sandgate_get_mode(instance: Handle, mut mode: Out<i32>)
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn sandgate_get_ledger(instance: Handle, mut ledger: Out<CLedger>) -> i32 {
     code(instance.call("sandgate_get_ledger", Need::Sound, |i| {
+        i.component.settle()?;
         let now = i.component.ledger();
         let now = CLedger {
             initial: now.initial,

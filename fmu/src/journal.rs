@@ -132,16 +132,20 @@ impl Journal {
         }
     }
 
-    /// Before a step: it may not go on; set-points are taken.
-    pub(crate) fn before_step(&mut self, component: &mut Component) -> Result<(), Fault> {
+    /// Before a step from `t` over `h` [s]: it may not go on; set-points are taken. A step that is refused changes nothing.
+    pub(crate) fn before_step(
+        &mut self,
+        component: &mut Component,
+        (t, h): (f64, f64),
+    ) -> Result<(), Fault> {
         self.goes_on()?;
+        component.check_step(t, h)?;
         if let Some(network) = &mut self.network {
             network.apply(
                 component,
                 &self.owned,
                 listener(&mut self.log, &mut Unobserved),
             );
-            self.owned.clear();
         }
         Ok(())
     }
@@ -166,6 +170,7 @@ impl Journal {
         t: f64,
         h: f64,
     ) -> Result<(), Fault> {
+        self.owned.clear();
         self.each(|one, source| one.on_step(component, report, t, h, source));
         self.watch()
     }

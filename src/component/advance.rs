@@ -61,6 +61,16 @@ impl Component {
         self.step(t, h, Some(watcher))
     }
 
+    /// Whether [`Component::do_step`] would begin this step, for adapters that change something first.
+    ///
+    /// # Errors
+    /// [`Error::NotAllowedNow`], [`Error::BadArgument`], as there.
+    pub fn check_step(&self, t: f64, h: f64) -> Result<(), Error> {
+        lifecycle::check(Call::DoStep, self.life.mode)?;
+        let end = self.step_end(t, h)?;
+        self.check_ramps(end - self.life.time).map(drop)
+    }
+
     fn step(
         &mut self,
         t: f64,
@@ -68,7 +78,7 @@ impl Component {
         watcher: Option<&mut Watcher<'_>>,
     ) -> Result<StepReport, Error> {
         lifecycle::check(Call::DoStep, self.life.mode)?;
-        let wanted = self.check_step(t, h)?;
+        let wanted = self.step_end(t, h)?;
         let start = self.life.time;
         let saturated = self.check_ramps(wanted - start)?;
         self.notes.extend(saturated);
@@ -137,7 +147,7 @@ impl Component {
     }
 
     /// End of the step.
-    fn check_step(&self, t: f64, h: f64) -> Result<f64, Error> {
+    fn step_end(&self, t: f64, h: f64) -> Result<f64, Error> {
         let refuse = |what: &str, found: f64, allowed: String| {
             Err(Error::BadArgument {
                 call: "do_step",

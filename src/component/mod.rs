@@ -16,6 +16,7 @@ mod engine;
 mod error;
 mod figures;
 mod host;
+mod initialize;
 mod life;
 mod lifecycle;
 mod outputs;
@@ -33,6 +34,7 @@ mod watch;
 
 pub use error::{Error, Severity};
 pub use host::HostSettings;
+pub use initialize::Beginning;
 pub use points::{next_point, step_end};
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport, Totals};
 pub use snapshot::{read_saved, saved_checksum};
@@ -46,13 +48,9 @@ pub use watch::{Intermediate, Wish};
 pub use crate::solver::StaysAwake;
 
 use crate::scene::Scene;
-use crate::units::shown;
 use engine::Engine;
 use life::Life;
 use lifecycle::Call;
-
-/// Rounding of a start time over the acoustic step [1].
-const MOST_ROUNDING: f64 = 1e-3;
 
 /// Where a component is in its life. `lifecycle` holds the table of which call is allowed when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -167,90 +165,6 @@ impl Component {
         self.life.stop = stop;
     }
 
-    /// Instantiated -> Initialization. `stop`: no step may end later [s].
-    ///
-    /// # Errors
-    /// [`Error::NotAllowedNow`], [`Error::BadArgument`] for times that are not finite, in the wrong order, or so far from 0 that doubles
-    /// do not tell a thousandth of an acoustic step from the next.
-    pub fn enter_initialization(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
-        lifecycle::check(Call::EnterInitialization, self.life.mode)?;
-        self.check_times("enter_initialization", start, stop)?;
-        self.life.mode = Mode::Initialization;
-        self.life.time = start;
-        self.life.stop = stop;
-        Ok(())
-    }
-
-    /// Whether a simulation may begin at `start` and end at `stop` [s], for adapters that are told before
-    /// [`Component::enter_initialization`]; `call` stands in the message.
-    ///
-    /// # Errors
-    /// [`Error::BadArgument`], as there.
-    pub fn check_times(
-        &self,
-        call: &'static str,
-        start: f64,
-        stop: Option<f64>,
-    ) -> Result<(), Error> {
-        let refuse = |what: &str, found: f64, allowed: String| {
-            Err(Error::BadArgument {
-                call,
-                what: what.to_owned(),
-                found: format!("{} s", shown(found)),
-                allowed,
-            })
-        };
-        if !start.is_finite() {
-            return refuse("start time", start, "a finite time".to_owned());
-        }
-        // Times are doubles, and must tell internal steps apart.
-        let fine = MOST_ROUNDING * self.scene.numerics.acoustic_step();
-        let latest = fine / f64::EPSILON;
-        if start.abs() > latest {
-            let allowed = format!(
-                "at most {latest:.1e} s from 0, where doubles still tell times {fine:.1e} s apart, a thousandth of this scene's \
-                 acoustic step; count time from a later origin"
-            );
-            return refuse("start time", start, allowed);
-        }
-        if let Some(stop) = stop
-            && !(stop.is_finite() && stop >= start)
-        {
-            return refuse(
-                "stop time",
-                stop,
-                format!(
-                    "a finite time from {} s, the start, on, or none (INFINITY in C)",
-                    shown(start)
-                ),
-            );
-        }
-        Ok(())
-    }
-
-    /// Initialization -> Stepping. Outputs are those of the start.
-    ///
-    /// # Errors
-    /// [`Error::NotAllowedNow`]; those of [`Component::settle`]: the mode stays, parameters may be corrected.
-    pub fn exit_initialization(&mut self) -> Result<(), Error> {
-        lifecycle::check(Call::ExitInitialization, self.life.mode)?;
-        self.settle()?;
-        self.life.mode = Mode::Stepping;
-        Ok(())
-    }
-
-    /// `enter_initialization` and `exit_initialization` in one.
-    ///
-    /// # Errors
-    /// As these; nothing is changed then.
-    pub fn initialize(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
-        let before = (self.life.mode, self.life.time, self.life.stop);
-        self.enter_initialization(start, stop)?;
-        self.exit_initialization().inspect_err(|_| {
-            (self.life.mode, self.life.time, self.life.stop) = before;
-        })
-    }
-
     /// Back to Instantiated with start values, as after `new` (threads as [`Component::set_threads`] gave them). Allowed in
     /// every mode.
     ///
@@ -277,9 +191,12 @@ impl Component {
         Ok(())
     }
 
-    /// The account of material.
+    /// The account of material; after a failed step that of the last good one, as outputs are.
     #[must_use]
     pub fn ledger(&self) -> MassLedger {
+        if self.step_failed || self.life.mode == Mode::Failed {
+            return outputs::ledger(&self.table, &self.life.outputs);
+        }
         self.engine.ledger()
     }
 
@@ -289,13 +206,13 @@ impl Component {
         self.life.communication_steps
     }
 
-    /// Internal steps done since the start.
+    /// Internal steps done since the start, those of a failed step among them.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.engine.steps()
     }
 
-    /// Figures of the solver. Built on demand.
+    /// Figures of the solver; after a failed step those of the moment at which it failed. Built on demand.
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         Statistics {

@@ -72,6 +72,22 @@ pub(super) fn sample(
     Ok(values)
 }
 
+/// The account of material that output values hold.
+pub(super) fn ledger(table: &VariableTable, outputs: &[f64]) -> MassLedger {
+    let mut ledger = MassLedger::default();
+    for (row, source) in table.with_sources() {
+        let place = match source {
+            Source::MassInitial => &mut ledger.initial,
+            Source::MassInflow => &mut ledger.inflow,
+            Source::MassOutflow => &mut ledger.outflow,
+            Source::MassPresent => &mut ledger.present,
+            _ => continue,
+        };
+        *place = outputs[table.offset(row)];
+    }
+    ledger
+}
+
 impl Moment<'_> {
     /// The k-th value of a row; 0 for rows that are not outputs.
     fn value(&self, source: Source, k: usize) -> f64 {

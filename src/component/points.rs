@@ -14,11 +14,13 @@ const SLACK: f64 = 1e-9;
 /// `None` at the end.
 #[must_use]
 pub fn next_point(time: f64, step: f64, until: f64) -> Option<f64> {
-    if time >= until - SLACK * step {
+    // An end before the first point is no rounding of the start.
+    let slack = SLACK * step.min(until);
+    if time >= until - slack {
         return None;
     }
     let multiple = multiple(steps_done(time, step) + 1.0, step);
-    Some(if multiple > until - SLACK * step {
+    Some(if multiple > until - slack {
         until
     } else {
         multiple
@@ -102,6 +104,7 @@ mod tests {
         let third = 0.1 / 3.0;
         assert_eq!(next(2.0 * third, third, 1.0), Some(3.0 * third));
         assert_eq!(next(2.0 * third, third, 0.1), Some(0.1));
+        assert_eq!(next(0.0, 0.1, 1e-13), Some(1e-13));
         // A start between two points goes to the next one.
         assert_eq!(next(0.15, 0.1, 1.0), Some(0.2));
     }

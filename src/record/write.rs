@@ -77,8 +77,7 @@ impl Recorder {
         };
         // Before the file is made, so that a bad name leaves none behind.
         keys::base(keys::ROOT, &options.instance)?;
-        let sink = Box::new(place.create()?);
-        Self::start(sink, Some(place), component, options, None)
+        Self::open(place, component, options, None)
     }
 
     /// As [`Recorder::create`], as the file that follows after `jumps` resets of a component whose files before it have
@@ -98,8 +97,22 @@ impl Recorder {
             ..Place::alone(path)
         };
         keys::base(keys::ROOT, &options.instance)?;
+        Self::open(place, component, options, None)
+    }
+
+    /// Begins the file at `place`. One that cannot be begun leaves nothing there, so that the same name can be given again.
+    fn open(
+        place: Place,
+        component: &Component,
+        options: RecordOptions,
+        numbers: Option<BTreeMap<String, u64>>,
+    ) -> Result<Self, RecordError> {
         let sink = Box::new(place.create()?);
-        Self::start(sink, Some(place), component, options, None)
+        let part = place.part();
+        Self::start(sink, Some(place), component, options, numbers).inspect_err(|_| {
+            // What counts is why it could not begin.
+            let _ = std::fs::remove_file(part);
+        })
     }
 
     pub(super) fn start(

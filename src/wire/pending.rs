@@ -3,7 +3,7 @@
 
 use super::convert::timestamp;
 use super::messages::{Applied, AppliedEvent, AppliedInput, AppliedMoment};
-use crate::component::{Component, ValueReference, Wish};
+use crate::component::{Causality, Component, ValueReference, Variable, Wish};
 use std::collections::HashSet;
 
 /// Inputs that are all told, also those that were set again before a step could use them. Of more only the last of each
@@ -29,7 +29,8 @@ pub struct Pending {
 }
 
 impl Pending {
-    /// Variables were set by `source`: flat values as in [`Component::set`].
+    /// Variables were set by `source`: flat values as in [`Component::set`]. Told is what inputs hold, in their range whatever was asked:
+    /// who sets it again needs no `saturate_inputs`, which one call may have set together with the input.
     pub fn set(
         &mut self,
         component: &Component,
@@ -38,7 +39,7 @@ impl Pending {
         source: &str,
     ) {
         self.inputs
-            .extend(applied_inputs(component, references, values, source));
+            .extend(applied_inputs(component, references, values, source, held));
         self.forget_superseded();
     }
 
@@ -50,7 +51,7 @@ impl Pending {
         slopes: &[f64],
         source: &str,
     ) {
-        let inputs = applied_inputs(component, references, slopes, source);
+        let inputs = applied_inputs(component, references, slopes, source, |_, slope| slope);
         self.inputs.extend(inputs.map(|input| AppliedInput {
             slope: true,
             ..input
@@ -84,7 +85,7 @@ impl Pending {
             t_bits: moment.time.to_bits(),
             inputs: inputs
                 .flat_map(|(references, values)| {
-                    applied_inputs(component, references, values, source)
+                    applied_inputs(component, references, values, source, held)
                 })
                 .collect(),
             ends: end.is_some(),
@@ -132,12 +133,21 @@ impl Pending {
     }
 }
 
+/// As an input holds it: what was accepted out of its range was clamped.
+fn held(variable: &Variable, value: f64) -> f64 {
+    match variable.range {
+        Some((least, most)) if variable.causality == Causality::Input => value.clamp(least, most),
+        _ => value,
+    }
+}
+
 /// One message each variable.
 fn applied_inputs(
     component: &Component,
     references: &[ValueReference],
     values: &[f64],
     source: &str,
+    told: impl Fn(&Variable, f64) -> f64,
 ) -> impl Iterator<Item = AppliedInput> {
     let mut rest = values;
     // References were accepted by the component, so that all are known.
@@ -145,11 +155,12 @@ fn applied_inputs(
         let variable = component.variables().by_reference(reference)?;
         let (own, others) = rest.split_at(variable.len().min(rest.len()));
         rest = others;
+        let own: Vec<f64> = own.iter().map(|&value| told(variable, value)).collect();
         Some(AppliedInput {
             reference,
             name: variable.name.clone(),
             bits: own.iter().map(|v| v.to_bits()).collect(),
-            values: own.to_vec(),
+            values: own,
             source: source.to_owned(),
             slope: false,
         })
@@ -159,7 +170,7 @@ fn applied_inputs(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::component::{Causality, ValueKind};
+    use crate::component::ValueKind;
 
     #[test]
     fn a_component_that_waits_keeps_the_last_of_each_input() {
@@ -181,7 +192,7 @@ mod tests {
         pending.slopes(&component, &[first], &[0.5], "early");
         let mut most = 0;
         for k in 0..10_000 {
-            pending.set(&component, &[first], &[f64::from(k)], "late");
+            pending.set(&component, &[first], &[f64::from(k) * 1e-4], "late");
             most = most.max(pending.inputs.len());
         }
         assert_eq!(most, TOLD);
@@ -194,7 +205,7 @@ mod tests {
             found.map(|k| (k, told.inputs[k].values[0]))
         };
         let (value, slope) = (of(first, false).unwrap(), of(first, true).unwrap());
-        assert_eq!((value.1, slope.1), (9_999.0, 0.5));
+        assert_eq!((value.1, slope.1), (0.9999, 0.5));
         assert_eq!(of(second, false).unwrap().1, 0.25);
         // A value that is set takes the slope's place, so that their order counts.
         assert!(slope.0 < value.0);

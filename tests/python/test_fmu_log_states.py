@@ -8,6 +8,7 @@ SANDGATE_PROGRAM  the program
 import csv
 import ctypes
 import os
+import pathlib
 import resource
 import signal
 import subprocess
@@ -268,8 +269,102 @@ def test_an_instance_goes_as_far_as_it_was_told_itself(version):
     fmu.free()
 
 
+def logging_library(folder, settings, **parameters):
+    """The C library with a scene whose log does not depend on the clock, and where that log goes."""
+    scene = os.path.join(folder, "scene.toml")
+    with open(PATH) as usual, open(scene, "w") as file:
+        file.write(usual.read() + f"\n[log]\ndeterministic = true\n{settings}\n")
+    library = Library(LIBRARY, scene)
+    for name, value in parameters.items():
+        library.set(name.replace("__", "."), value)
+    path = ctypes.c_uint32(library.references["log.path"])
+    library.check(library.lib.sandgate_set_text(library.handle, path, os.path.join(folder, "run.mcap").encode()))
+    return library
+
+
+def limit_files(size):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+
+
+def begins_again_c(folder):
+    """A required log fails at the very start, in its first bytes or in the messages of the start: nothing has happened."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    for size in (1000, 20_000, 30_000):
+        library = logging_library(folder, "required = true")
+        limit_files(size)
+        mode = ctypes.c_int32(-1)
+        start = library.lib.sandgate_initialize(library.handle, ctypes.c_double(0.5), ctypes.c_double(9.0))
+        assert start == 7, size
+        library.check(library.lib.sandgate_get_mode(library.handle, ctypes.byref(mode)))
+        assert (mode.value, library.get(["time"])) == (0, [0.0])
+        assert os.listdir(folder) == ["scene.toml"]
+        limit_files(resource.RLIM_INFINITY)
+        library.initialize()
+        library.step(0.0, H)
+        library.free()
+        runs_again(pathlib.Path(folder, "run.mcap"))
+        os.remove(os.path.join(folder, "run.mcap"))
+
+
+def goes_on_c(folder):
+    """A log over several files breaks off, and goes on in the next one as soon as there is room."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    library = logging_library(folder, f"required = false\nrotate_every = {2 * H}").initialize()
+    for k in range(12):
+        limit_files(20_000 if 3 <= k < 7 else resource.RLIM_INFINITY)
+        library.step(k * H, (k + 1) * H - k * H)
+    library.check(library.lib.sandgate_terminate(library.handle))
+    library.free()
+    files = sorted(name for name in os.listdir(folder) if name.startswith("run"))
+    assert [name for name in files if name.endswith(".part")] == ["run-0-0001.mcap.part"], files
+    assert "run-0-0000.mcap" in files and len(files) > 3, files
+    for name in files:
+        if not name.endswith(".part"):
+            runs_again(pathlib.Path(folder, name))
+
+
+@pytest.mark.parametrize("what", ["begins_again_c", "goes_on_c"])
+def test_a_log_that_met_a_full_disk_begins_again_where_there_is_room(what, tmp_path):
+    done = subprocess.run([sys.executable, __file__, what, str(tmp_path)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_what_one_call_sets_beside_saturate_inputs_runs_again(tmp_path):
+    library = logging_library(str(tmp_path), "required = true").initialize()
+    library.set("saturate_inputs", 1.0)
+    both_at_once = (ctypes.c_uint32 * 2)(library.references["saturate_inputs"], library.references[GATE])
+    two = ctypes.c_size_t(2)
+    library.check(library.lib.sandgate_set(library.handle, both_at_once, two, (ctypes.c_double * 2)(0.0, 5.0), two))
+    assert library.get([GATE]) == [1.0]
+    library.step(0.0, H)
+    library.check(library.lib.sandgate_terminate(library.handle))
+    library.free()
+    path = tmp_path / "run.mcap"
+    runs_again(path)
+    assert [float(row[GATE]) for row in exported(path)][-1] == 1.0
+
+
+def test_the_account_of_mass_follows_parameters_and_stays_at_the_last_good_step():
+    library = Library(LIBRARY, PATH)
+    lib, handle = library.lib, library.handle
+
+    def ledger():
+        account = (ctypes.c_double * 4)()
+        library.check(lib.sandgate_get_ledger(handle, account))
+        return list(account)
+
+    names = ["mass.initial", "mass.inflow", "mass.outflow", "mass.present"]
+    before = ledger()
+    parameter = next(name for name in library.references if name.startswith("body.") and name.endswith("upper_y"))
+    library.set(parameter, 0.75 * library.get([parameter])[0])
+    assert ledger() != before and ledger() == library.get(names)
+    library.free()
+
+
 if __name__ == "__main__":
     if sys.argv[1] == "c":
         rescued_c(sys.argv[2])
+    elif sys.argv[1].endswith("_c"):
+        globals()[sys.argv[1]](sys.argv[2])
     else:
         rescued_fmu(*sys.argv[1:3])

@@ -293,6 +293,39 @@ def test_the_c_library_publishes_alike():
     library.free()
 
 
+def test_a_refused_step_takes_no_set_point_and_leaves_the_importer_what_it_owns():
+    with Published(3) as p:
+        p.point(GATE, 0.75)
+        before = p.fmu.save()
+        with pytest.raises(FMICallException):
+            p.fmu.step(9.0, H)
+        assert p.fmu.save() == before
+        p.fmu.step(0.0, H)
+        assert p.fmu.get([GATE]) == [0.75]
+        p.fmu.set(GATE, 0.25)
+        with pytest.raises(FMICallException):
+            p.fmu.step(9.0, H)
+        p.point(GATE, 0.5)
+        p.fmu.step(H, H)
+        assert p.fmu.get([GATE]) == [0.25]
+
+
+def test_a_network_that_cannot_open_costs_no_log(tmp_path):
+    with Published(3) as first:
+        first.fmu.step(0.0, H)
+        saved = first.fmu.save()
+    fmu = Fmu(FMUS[3])
+    path = tmp_path / "run.mcap"
+    for name, value in [("log.required", False), ("log.path", str(path)), ("zenoh.config", str(tmp_path / "none.json5"))]:
+        fmu.set(name, value)
+    fmu.restore(saved)
+    fmu.step(H, H)
+    fmu.free()
+    assert any("none.json5" in text for _, _, text in fmu.messages)
+    done = subprocess.run([PROGRAM, "log", "redrive", path, "--check"], capture_output=True, text=True)
+    assert done.returncode == 0 and "same bits: 1 steps" in done.stdout, done.stdout + done.stderr
+
+
 def test_an_fmu_without_zenoh_says_how_to_get_it():
     fmu = Fmu(os.environ["SANDGATE_PLAIN"])
     with pytest.raises(FMICallException):

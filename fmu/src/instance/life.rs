@@ -37,6 +37,7 @@ impl Instance {
             self.component.settle()?;
             self.journal.open(&self.component, start)?
         };
+        let before = self.component.beginning();
         let left = leave(&mut self.component);
         if opened && left.is_err() {
             self.journal.discard();
@@ -44,7 +45,11 @@ impl Instance {
         left?;
         if opened {
             self.journal.asks(&self.component, &Asked::Nothing);
-            self.journal.initialized(&self.component)?;
+            if let Err(fault) = self.journal.initialized(&self.component) {
+                self.journal.discard();
+                self.component.take_back(before)?;
+                return Err(fault);
+            }
         }
         self.event(|| format!("initialised at t = {} s", self.component.time()));
         Ok(())
@@ -91,7 +96,7 @@ impl Instance {
     ) -> Result<StepReport, Fault> {
         self.last_step = Status::Error;
         self.journal.asks_step(&self.component, t, h);
-        self.journal.before_step(&mut self.component)?;
+        self.journal.before_step(&mut self.component, (t, h))?;
         let done = step(&mut self.component, &mut self.journal, t, h)
             .inspect_err(|_| self.journal.failed_step());
         self.tell_notes();

@@ -153,33 +153,36 @@ impl Journal {
         if there.mode() != Mode::Stepping {
             return Ok(begun);
         }
-        let outcome = self.begin_what_waits(there, &mut begun);
-        match outcome {
-            Err(fault) if settings.log_required => {
-                if let Some(network) = begun.network {
-                    // Nobody has seen it yet; why the state is refused is what counts.
-                    let _ = network.close(&mut Unobserved);
-                }
-                return Err(fault);
-            }
-            Err(fault) => self.complaint = Some(fault.to_string()),
-            Ok(()) => {}
-        }
-        Ok(begun)
-    }
-
-    fn begin_what_waits(&mut self, there: &Component, begun: &mut Begun) -> Result<(), Fault> {
-        let settings = there.host_settings();
+        let mut faults = Vec::new();
         if self.network.is_none() && !settings.zenoh_config.is_empty() {
-            let network = begun.network.insert(self.connect(there)?);
-            network
-                .observer()
-                .on_jump(there, AppliedEvent::Restore, self.interface);
+            match self.connect(there) {
+                Ok(mut network) => {
+                    network
+                        .observer()
+                        .on_jump(there, AppliedEvent::Restore, self.interface);
+                    begun.network = Some(network);
+                }
+                Err(fault) if settings.log_required => return Err(fault),
+                Err(fault) => faults.push(fault.to_string()),
+            }
         }
         if self.log.is_none() && !settings.log_path.is_empty() {
-            begun.log = Some(self.create(there, ("restored", there.time()))?);
+            match self.create(there, ("restored", there.time())) {
+                Ok(log) => begun.log = Some(log),
+                Err(fault) if settings.log_required => {
+                    if let Some(network) = begun.network {
+                        // Nobody has seen it yet; why the state is refused is what counts.
+                        let _ = network.close(&mut Unobserved);
+                    }
+                    return Err(fault);
+                }
+                Err(fault) => faults.push(fault.to_string()),
+            }
         }
-        Ok(())
+        if !faults.is_empty() {
+            self.complaint = Some(faults.join("; "));
+        }
+        Ok(begun)
     }
 
     /// The component has come to where they began.

@@ -48,21 +48,32 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             let nothing = nothing_between(args.window.span(), &whole.time);
             tell!("warning: {}: {nothing}", args.file.display());
         }
+        // Both before either is written, so that a name that is taken leaves nothing behind.
+        let csv = args.csv.as_deref().map(create).transpose()?;
+        let parquet = args.parquet.as_deref().map(create).transpose();
+        let parquet = parquet.inspect_err(|_| args.csv.iter().for_each(|path| remove(path)))?;
         // Beside the scalars a CSV file has the time, a Parquet file time and step.
         let shape = |more: usize| {
             let columns = table.columns.len() + more;
             format!("{} rows, {columns} columns", table.time.len())
         };
-        if let Some(path) = &args.csv {
-            let mut file = BufWriter::new(create(path)?);
+        let mut unwritten = [&args.csv, &args.parquet].into_iter().flatten();
+        let mut written = |path: &Path, done: std::io::Result<()>, more: usize| {
+            if let Err(error) = done {
+                unwritten.by_ref().for_each(|path| remove(path));
+                return Err(cannot_write(path, error));
+            }
+            unwritten.next();
+            say(&format!("{}: {}", path.display(), shape(more)))
+        };
+        if let (Some(path), Some(file)) = (&args.csv, csv) {
+            let mut file = BufWriter::new(file);
             let done = write_csv(&mut file, &table).and_then(|()| file.flush());
-            or_remove(path, done)?;
-            say(&format!("{}: {}", path.display(), shape(1)))?;
+            written(path, done, 1)?;
         }
-        if let Some(path) = &args.parquet {
-            let done = parquet::write(create(path)?, &table);
-            or_remove(path, done.map_err(std::io::Error::other))?;
-            say(&format!("{}: {}", path.display(), shape(2)))?;
+        if let (Some(path), Some(file)) = (&args.parquet, parquet) {
+            let done = parquet::write(file, &table);
+            written(path, done.map_err(std::io::Error::other), 2)?;
         }
         ending = table.ending;
     }
@@ -112,11 +123,8 @@ fn write_csv(out: &mut impl std::io::Write, table: &Table) -> std::io::Result<()
 }
 
 /// What could not be written whole goes, so that the same command can be given again.
-fn or_remove(path: &Path, done: std::io::Result<()>) -> Result<(), CliError> {
-    done.map_err(|error| {
-        let _ = std::fs::remove_file(path);
-        cannot_write(path, error)
-    })
+fn remove(path: &Path) {
+    let _ = std::fs::remove_file(path);
 }
 
 /// A new file.

@@ -35,7 +35,7 @@ the state. Another processor may compute other bits where it adds or multiplies 
 /// Carries out `sandgate log redrive`.
 ///
 /// # Errors
-/// [`CliError::Redrive`]; with `--check` [`CliError::Differs`], and [`CliError::Content`] if there is nothing to compare.
+/// [`CliError::Redrive`] for files that cannot be run, after all others were; with `--check` [`CliError::Differs`], and [`CliError::Content`] if there is nothing to compare.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.log.is_some() && args.files.len() > 1 {
         return Err(CliError::Usage(
@@ -48,7 +48,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         particles_every: args.particles_every,
     };
     let (mut different, mut said) = (Vec::new(), Ok(()));
-    let mut empty = None;
+    let (mut empty, mut refused) = (None, None::<CliError>);
     for file in &args.files {
         let mut told = Instant::now();
         let done = redrive(file, &options, &mut |time| {
@@ -56,7 +56,17 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
                 told = Instant::now();
                 tell!("{}  t = {time:.3} s", file.display());
             }
-        })?;
+        });
+        let done = match done {
+            Ok(done) => done,
+            Err(error) => {
+                // The last one is told by who gets it.
+                if let Some(earlier) = refused.replace(error.into()) {
+                    tell!("{earlier}");
+                }
+                continue;
+            }
+        };
         let line = verdict(file, &done);
         if !done.has_compared() {
             empty.get_or_insert(file);
@@ -67,9 +77,15 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             said = said.and(say(&line));
         }
     }
-    match empty {
-        _ if !different.is_empty() => Err(CliError::Differs(different.join("\n"))),
-        Some(file) if args.check => Err(CliError::Content {
+    if !different.is_empty() {
+        if let Some(error) = refused {
+            tell!("{error}");
+        }
+        return Err(CliError::Differs(different.join("\n")));
+    }
+    match (refused, empty) {
+        (Some(error), _) => Err(error),
+        (None, Some(file)) if args.check => Err(CliError::Content {
             path: file.clone(),
             problem: "nothing to compare: it holds no output, figure, frame or state hash"
                 .to_owned(),

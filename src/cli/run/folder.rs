@@ -166,9 +166,8 @@ fn numbered(name: &str) -> String {
 /// Files that a run makes; nothing else in a folder is ever touched.
 fn is_ours(name: &str) -> bool {
     let whole = name.strip_suffix(".part").unwrap_or(name);
-    let replaced = name.strip_suffix(whole_file::UNFINISHED);
     matches!(
-        replaced.unwrap_or(whole),
+        whole_file::unfinished(name).unwrap_or(whole),
         "summary.json" | "gauges.csv" | "gauges.svg" | "checkpoint.state"
     ) || is_log(whole)
 }

@@ -166,8 +166,14 @@ pub(super) fn table(session: &Session, status: &str) -> String {
             ledger.error()
         ),
         format!("  state   {}", component.state_hash()),
-        String::new(),
     ];
+    if component.step_failed() {
+        lines.push(
+            "  (internal steps and iterations up to the failure; mass and outputs of the last good step)"
+                .to_owned(),
+        );
+    }
+    lines.push(String::new());
     lines.extend(variable_rows(session));
     lines.push(String::new());
     for note in notes(session) {

@@ -134,7 +134,7 @@ impl<'a> Builder<'a> {
         self.time = stats.time;
         let stands = self.standing.row(self.lines);
         self.lines += 1;
-        if !(stands && (self.span.0..=self.span.1).contains(&stats.time)) {
+        if !(stands && is_in(self.span, stats.time)) {
             return;
         }
         self.table.time.push(stats.time);
@@ -214,13 +214,7 @@ impl<'a> Builder<'a> {
     fn put(&mut self, name: &str, values: &[f64]) {
         let places = self.places.get(name).map_or(&[][..], Vec::as_slice);
         for (&place, &value) in places.iter().zip(values) {
-            // The log has what was asked for. What was taken and lies out of the range was clamped.
-            self.now.row[place] = match self.ranges[place] {
-                Some((least, most)) if self.table.columns[place].is_input => {
-                    value.clamp(least, most)
-                }
-                _ => value,
-            };
+            self.now.row[place] = value;
         }
     }
 }
@@ -232,4 +226,10 @@ struct Now {
     row: Vec<f64>,
     /// Of each column, per second; only inputs have one, for the step that comes.
     slopes: Vec<f64>,
+}
+
+/// Whether a time is in a span [s]: as the whole nanoseconds that times of logs are, since a point at 0.3 s may be a bit later.
+fn is_in((from, until): (f64, f64), time: f64) -> bool {
+    let nanoseconds = |t: f64| (t * 1e9).round();
+    (nanoseconds(from)..=nanoseconds(until)).contains(&nanoseconds(time))
 }

@@ -25,7 +25,8 @@ impl Recorder {
         let Some(place) = self.place.as_ref().filter(|_| late || large) else {
             return Ok(());
         };
-        if self.file.failure().is_some() || self.ended.is_some() {
+        let broke_off = self.file.failure().is_some();
+        if self.ended.is_some() || broke_off && self.options.required {
             return Ok(());
         }
         match self.follow(place.next(), component, "rotated") {
@@ -33,6 +34,11 @@ impl Recorder {
                 following.first_time = self.first_time;
                 following.snapshots = self.snapshots;
                 self.go_on(following, |before| before.finish(component, "rotated"))
+            }
+            // There is still no room: the next one is tried when it is time for it.
+            Err(_) if broke_off => {
+                self.began = component.time();
+                Ok(())
             }
             Err(error) => {
                 let state = self.whereabouts(component);
@@ -106,9 +112,8 @@ impl Recorder {
             begins: None,
             ..self.options.clone()
         };
-        let sink = Box::new(next.create()?);
         let numbers = (reason == "rotated").then(|| self.channels.numbers());
-        Self::start(sink, Some(next), component, options, numbers)
+        Self::open(next, component, options, numbers)
     }
 
     /// The component was reset or restored: ends this file and starts the next (`run-1-0000.mcap`), which carries the
