@@ -85,6 +85,14 @@ impl<const D: usize> WendlandC2<D> {
         let t = (1.0 - r * self.inverse_2h).max(0.0);
         -self.slope * t * t * t
     }
+
+    /// F'(r) >= 0 [1/m^(D+3)].
+    #[inline(always)]
+    #[must_use]
+    pub fn f_slope(&self, r: f64) -> f64 {
+        let t = (1.0 - r * self.inverse_2h).max(0.0);
+        3.0 * self.slope * self.inverse_2h * t * t
+    }
 }
 
 #[cfg(test)]
@@ -131,6 +139,8 @@ mod tests {
         for r in [0.1, 0.9, 1.7, 2.5] {
             let d = (k.w(r + 1e-6) - k.w(r - 1e-6)) / 2e-6;
             assert!((k.f(r) * r - d).abs() < 1e-8);
+            let d = (k.f(r + 1e-6) - k.f(r - 1e-6)) / 2e-6;
+            assert!((k.f_slope(r) - d).abs() < 1e-8);
         }
     }
 }

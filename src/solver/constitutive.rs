@@ -31,7 +31,13 @@ impl<const D: usize> Solver<D> {
             let k = &self.kinematics[i];
             let material = &self.materials[phase[i] as usize];
             let room = self.packing_rate(material, k, (*rho, *relaxed), dt);
-            let rate = k.divergence + dt / last * room;
+            // Places went straight to where div v is taken: what it changed by on the way.
+            let bend = if material.is_fluid() {
+                0.5 * last * k.curvature
+            } else {
+                0.0
+            };
+            let rate = k.divergence + bend + dt / last * room;
             // Exact for a constant rate, and positive whatever the step.
             let new = *rho * (-last * rate).exp();
             let least = material.parted_density * material.rest_density();

@@ -27,6 +27,9 @@ pub(super) struct Row<const D: usize> {
     /// sum V_j |F| r^2 (cos 4 theta, sin 4 theta), theta the direction of x_ij: how far neighbours lie otherwise than evenly
     /// all around; 0 in space and in scenes without fluids [1].
     pub(super) fourfold: [f64; 2],
+    /// sum V_j v_ij.(grad grad W_ij) v_ij: second derivative of sum V_j W_ij along straight ways; 0 in scenes without fluids
+    /// [1/s^2].
+    pub(super) curvature: f64,
     /// Largest |v_ij|^2 [m^2/s^2].
     pub(super) speed2: f64,
     /// sum_j g_ij, walls once [1/m].
@@ -44,6 +47,7 @@ impl<const D: usize> Row<D> {
         moment: [[0.0; D]; D],
         pair_shear2: 0.0,
         fourfold: [0.0; 2],
+        curvature: 0.0,
         speed2: 0.0,
         side: [0.0; D],
         nearness: 0.0,
@@ -145,7 +149,8 @@ impl<const D: usize> Solver<D> {
         }
         let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
         let (mut pair_shear2, mut speed2, mut fourfold) = (zero, zero, [zero; 2]);
-        let (mut side, mut nearness) = ([zero; D], zero);
+        let (mut side, mut nearness, mut curvature) = ([zero; D], zero, zero);
+        let falloff = Four::splat(lanes, -3.0 * self.kernel.inverse_support());
         // Sums without harder and softer neighbours, and without softer ones.
         let mut until = [(gradient, moment, pair_shear2); 2];
         let groups = near.as_chunks::<LANES>().0;
@@ -168,11 +173,13 @@ impl<const D: usize> Solver<D> {
                 v2 += v[k] * v[k];
                 vx += v[k] * x[k];
             }
-            let t = (one - r2.sqrt() * inverse_2h).max(zero);
-            let mut vf = other.volume * (slope * t * t * t);
+            let r = r2.sqrt();
+            let t = (one - r * inverse_2h).max(zero);
+            let mut volume = other.volume;
             if RINGS {
-                vf = vf * ((ring + other.hoop) * to_section);
+                volume = volume * ((ring + other.hoop) * to_section);
             }
+            let vf = volume * (slope * t * t * t);
             // Groups are filled up with i itself.
             nearness -= r2.where_greater(zero, vf);
             let inverse = one.over(r2.max(least) * vf);
@@ -191,6 +198,11 @@ impl<const D: usize> Solver<D> {
             // |g| r = |vf| r^2; (v.x)^2/r^2 = (v.x)^2 vf (1/(r^2 vf)).
             let weight = vf * vf * inverse;
             pair_shear2 -= weight * vx * vx;
+            if FLUIDS {
+                // F v^2 + F'/r (v.x)^2, with 1/r = r vf (1/(r^2 vf)).
+                let steeper = volume * (slope * t * t) * falloff;
+                curvature += vf * (v2 + steeper * r * inverse * vx * vx);
+            }
             if D == 2 && FLUIDS {
                 let (p, q) = ((x[0] - x[1]) * (x[0] + x[1]), (x[0] + x[0]) * x[1]);
                 fourfold[0] -= weight * (p - q) * (p + q);
@@ -203,6 +215,7 @@ impl<const D: usize> Solver<D> {
         let mut sums = Row {
             pair_shear2: dissipation * pair_shear2.sum(),
             fourfold: fourfold.map(Four::sum),
+            curvature: curvature.sum(),
             speed2: speed2.largest(),
             side: side.map(Four::sum),
             nearness: nearness.sum(),

@@ -73,12 +73,19 @@ impl<const D: usize> Solver<D> {
             if r2 >= support2 || r2 == 0.0 {
                 continue;
             }
-            let mut vf = self.volume[n] * self.kernel.f(r2.sqrt());
+            let r = r2.sqrt();
+            let mut volume = self.volume[n];
             if self.geometry.is_axisymmetric() {
-                vf *= (self.rings[i].hoop + self.rings[n].hoop) * (0.5 / std::f64::consts::TAU);
+                volume *= (self.rings[i].hoop + self.rings[n].hoop) * (0.5 / std::f64::consts::TAU);
             }
+            let vf = volume * self.kernel.f(r);
             let g = scale(vf, &x);
             let v = sub(&grains.velocity[i], &grains.velocity[n]);
+            if self.has_fluids {
+                let along = dot(&v, &x);
+                sums.curvature +=
+                    vf * dot(&v, &v) + volume * self.kernel.f_slope(r) / r * along * along;
+            }
             add_outer(&mut sums.gradient, -1.0, &v, &g);
             add_outer(&mut sums.moment, -1.0, &x, &g);
             for (side, g) in sums.side.iter_mut().zip(&g) {

@@ -4,7 +4,7 @@ mod beside_walls;
 
 use crate::boundary::WallPoints;
 use crate::material::{Material, Viscous};
-use crate::math::{Arch, Geometry, Tensor, Vector};
+use crate::math::{Arch, Geometry, Tensor, Vector, norm, scale, sub};
 use crate::state::State;
 
 use super::Solver;
@@ -79,6 +79,11 @@ fn kinematics_agree<const D: usize>(
         let fast = &solver.kinematics[i];
         close(plain.relative_speed, fast.relative_speed, 3.0);
         close(plain.divergence, fast.divergence, 1e3);
+        close(
+            plain.curvature,
+            fast.curvature,
+            fast.curvature.abs().max(1e3),
+        );
         close(plain.shear, fast.shear, 1e3);
         close(plain.correction, fast.correction, 1e2);
         close(plain.pair_scale, fast.pair_scale, 1e2);
@@ -254,6 +259,37 @@ fn a_fluids_pair_form_bears_its_share_whatever_the_unevenness() {
         whole(&uneven) / whole(&even) < 0.8,
         "that much unevenness would count as shear"
     );
+}
+
+/// What density takes of a step is by how much the sum of kernels has grown over the way, to the third order of the step: div v of
+/// the way's end alone leaves the second.
+#[test]
+fn a_fluids_density_follows_the_sum_of_kernels_along_the_way() {
+    let (solver, state) = disordered::<2>(clay(), Geometry::Planar { width: 0.3 }, 20);
+    let (x, v) = (&state.grains.position, &state.grains.velocity);
+    let sum = |i: usize, back: f64| -> f64 {
+        let before = |n: usize| sub(&x[n], &scale(back, &v[n]));
+        let at = before(i);
+        let others = (0..x.len()).filter(|&n| n != i);
+        let kernel = |n: usize| {
+            let r = norm(&solver.periodic.difference(&at, &before(n)));
+            solver.volume[n] * solver.kernel.w(r)
+        };
+        others.map(kernel).sum()
+    };
+    let missed = |dt: f64| -> [f64; 2] {
+        let mut worst = [0.0_f64; 2];
+        for (i, k) in solver.kinematics.iter().enumerate().step_by(7) {
+            let grown = sum(i, 0.0) - sum(i, dt) + dt * k.divergence;
+            worst[0] = worst[0].max(grown.abs());
+            worst[1] = worst[1].max((grown + 0.5 * dt * dt * k.curvature).abs());
+        }
+        worst
+    };
+    let (coarse, fine) = (missed(2e-4), missed(1e-4));
+    println!("without {coarse:?}, with {fine:?}");
+    assert!((coarse[0] / fine[0] - 4.0).abs() < 0.4);
+    assert!((coarse[1] / fine[1] - 8.0).abs() < 0.8);
 }
 
 /// Sand, clay and water all mixed up, in the plane and as rings.
