@@ -71,8 +71,10 @@ impl<const D: usize> Solver<D> {
             weights += four.k * porous;
             fall += four.down * porous;
         });
-        // The particle's own cell counts as |F| at r = 0 does; k x_ij = -2 g_ij.
-        let own_weight = 2.0 * self.volume[i] * self.kernel.f(0.0).abs();
+        // The particle's own cell counts as |F| at r = 0 does, of a ring by its section as its neighbours' do; k x_ij = -2 g_ij.
+        let ring = self.rings.get(i);
+        let section = self.volume[i] * ring.map_or(1.0, |r| r.hoop / std::f64::consts::TAU);
+        let own_weight = 2.0 * section * self.kernel.f(0.0).abs();
         let sum = own_weight * own + sum.sum() - 2.0 * buoyant * fall.sum();
         sum / (own_weight + weights.sum())
     }
