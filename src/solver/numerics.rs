@@ -48,6 +48,8 @@ pub struct Numerics {
     pub smoothing_ratio: f64,
     /// Artificial sound speed c0 [m/s]; default 10 max(sqrt(g H), expected speed).
     pub sound_speed: f64,
+    /// Speed of a fall from the height of the material, at most c0/10 [m/s]: what is slow is measured by it.
+    pub fall_speed: f64,
     /// The scheme. `PaperA` uses spacing, smoothing ratio, sound speed, Courant number, artificial viscosity, jitter and
     /// seed of this table, and none of the others; `PaperB` spacing, smoothing ratio, sound speed, Courant number, density
     /// diffusion, shifting, jitter and seed.

@@ -1,15 +1,16 @@
 //! Sleep: a scene in which nothing has moved for a while is not computed until an input asks for something.
 //!
-//! Quiet is a step in which the root mean square of speeds is below 3e-6 c0 (3e-5 of the speed of a fall from the scene's
-//! height, as c0 is chosen), no particle is faster than 1e-4 c0, gates are where they should be, and nothing flows in.
+//! Quiet is a step in which the root mean square of speeds is below 3e-5 of the speed of a fall from the scene's height, sqrt(g H),
+//! no particle is faster than 1e-3 of it, gates are where they should be, and nothing flows in. A sound speed that was raised for
+//! other reasons makes no flow slow.
 //! A window is [`QUIET_STEPS`] of them in a row. Once forces on walls agree in two windows that follow each other, the
 //! particles stand still and time passes in one step, forces as they were: grains come to rest long before friction has
 //! settled what each wall carries (docs/theory.md, "Sleep").
 //! A gate told to move or an inflow told to run wakes the scene. Scenes with moving walls or without walls never sleep, nor do
-//! those with a viscous material that would still have some way to go at such speeds.
+//! those with a material that would still have some way to go at such speeds.
 
 use crate::boundary::WallPoints;
-use crate::material::Material;
+use crate::material::{Law, Material};
 use crate::math::{Vector, dot, norm, scale, sub};
 use crate::state::{Grains, RestState, State};
 
@@ -24,14 +25,14 @@ const FORCE_DRIFT: f64 = 1e-3;
 /// Share of the largest force that smaller forces are measured by [1].
 const FORCE_FLOOR: f64 = 0.1;
 
-/// Root mean square speed of a quiet scene, over c0 [1].
-const QUIET_SPEED: f64 = 3e-6;
+/// Root mean square speed of a quiet scene, over sqrt(g H) [1].
+const QUIET_SPEED: f64 = 3e-5;
 
-/// Speed that no particle of a quiet scene has, over c0 [1]: grains without load may jitter on a surface for long, but what
+/// Speed that no particle of a quiet scene has, over sqrt(g H) [1]: grains without load may jitter on a surface for long, but what
 /// falls is faster before a scene sleeps.
-const FASTEST: f64 = 1e-4;
+const FASTEST: f64 = 1e-3;
 
-/// Most viscosity of a material that sleeps, over rho sqrt(g H^3) [1], where c0 = 10 sqrt(g H).
+/// Most viscosity of a material that sleeps, over rho sqrt(g H^3) [1].
 ///
 /// A Bingham fluid's last way goes as 1/t: at the speed v it has H sqrt(eta v/(rho g H^2)) before it, 5e-5 H here.
 const MOST_VISCOUS: f64 = 1e-4;
@@ -65,13 +66,17 @@ pub(super) fn stays_awake<const D: usize>(
     if walls.velocity.iter().any(|v| *v != [0.0; D]) {
         return Some(StaysAwake::MovingWalls);
     }
-    let inertia = (numerics.sound_speed / 10.0).powi(3) / norm(gravity);
+    let inertia = numerics.fall_speed.powi(3) / norm(gravity);
     let creeps = materials.iter().position(|m| !stops_soon(m, inertia));
     creeps.map(StaysAwake::Creeping)
 }
 
-/// Whether what moves at the speed of a quiet scene is all but there; `inertia` is sqrt(g H^3) [m^2/s].
+/// Whether what moves at the speed of a quiet scene is all but there; `inertia` is sqrt(g H^3) [m^2/s]. A law without a static
+/// friction creeps under any load, and ever more slowly.
 fn stops_soon(material: &Material, inertia: f64) -> bool {
+    if matches!(material.law, Law::BarkerGray(_)) {
+        return false;
+    }
     let viscous = &material.viscous;
     let most = MOST_VISCOUS * material.rest_density() * inertia;
     viscous.consistency == 0.0 || (viscous.is_linear() && viscous.consistency <= most)
@@ -174,8 +179,8 @@ impl<const D: usize> Solver<D> {
 
     /// Whether speeds are those of rest.
     pub(super) fn is_quiet(&self, grains: &Grains<D>) -> bool {
-        let c0 = self.numerics.sound_speed;
-        let fast = (FASTEST * c0).powi(2);
+        let fall = self.numerics.fall_speed;
+        let fast = (FASTEST * fall).powi(2);
         let (mut mass, mut twice_energy) = (0.0, 0.0);
         for (v, m) in grains.velocity.iter().zip(&grains.mass) {
             let v2 = dot(v, v);
@@ -185,7 +190,7 @@ impl<const D: usize> Solver<D> {
             mass += m;
             twice_energy += m * v2;
         }
-        twice_energy < (QUIET_SPEED * c0).powi(2) * mass
+        twice_energy < (QUIET_SPEED * fall).powi(2) * mass
     }
 
     /// Gates stand where they should, but for rounding, and no inflow runs.

@@ -16,6 +16,7 @@ pub(super) fn numerics() -> Numerics {
         spacing: SPACING,
         smoothing_ratio: 1.6,
         sound_speed: 20.0,
+        fall_speed: 2.0,
         scheme: Scheme::Implicit,
         courant: 0.5,
         acoustic_steps: 1,

@@ -1,6 +1,6 @@
 //! What a scene holds and what it leaves out, for people.
 
-use crate::cli::remarks::remarks;
+use crate::cli::remarks::{raised_viscosity, remarks};
 use crate::component::{Component, StaysAwake};
 use crate::material::{Law, Material, MuI};
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
@@ -33,7 +33,7 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
         ));
     }
     for named in &scene.materials {
-        let about = material(&named.material);
+        let about = material(scene, &named.material);
         text.push_str(&format!("  material {}: {about}\n", named.name));
     }
     for name in &scene.unused_materials {
@@ -78,16 +78,15 @@ fn sleep(scene: &Scene, component: &Component) -> String {
         }
         Some(StaysAwake::NoWalls) => "there is no wall to rest on".to_owned(),
         Some(StaysAwake::MovingWalls) => "walls move".to_owned(),
-        Some(StaysAwake::Creeping(k)) => format!(
-            "material {} is so viscous that it may creep on for long",
-            scene.materials[k].name
-        ),
+        Some(StaysAwake::Creeping(k)) => {
+            format!("material {} may creep on for long", scene.materials[k].name)
+        }
     };
     format!("never: {never}")
 }
 
 /// The law of a material and what is added to it.
-fn material(material: &Material) -> String {
+fn material(scene: &Scene, material: &Material) -> String {
     let grains = &material.grains;
     let mu_i = |law: &MuI| {
         let growth = if law.mu_inf > 0.0 {
@@ -133,6 +132,11 @@ fn material(material: &Material) -> String {
     let viscous = &material.viscous;
     if viscous.is_linear() && viscous.consistency > 0.0 {
         text.push_str(&format!("; viscosity {} Pa s", viscous.consistency));
+        if let Some(raised) = raised_viscosity(scene, material) {
+            text.push_str(&format!(
+                ", computed with {raised:.3} (artificial_viscosity)"
+            ));
+        }
     } else if viscous.consistency > 0.0 {
         text.push_str(&format!(
             "; {} Pa s^n with n = {}",

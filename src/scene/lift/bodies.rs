@@ -1,8 +1,8 @@
 //! Bodies: where material is at the start, clear of everything else.
 
-use super::Lift;
 use super::geometry::{Region, crossing_edges, signed_area};
 use super::motion::Turning;
+use super::{Filled, Lift};
 use crate::math::dot;
 use crate::scene::raw::{At, Coordinates, Entry, Length, List, Place, RawBody, RawBox, RawColumn};
 use crate::scene::types::{Body, Dimension, VelocityProfile};
@@ -46,7 +46,11 @@ impl Lift<'_> {
         if self.check_inside(&entry.place, lower) && self.check_inside(&entry.place, upper) {
             self.check_bodies_apart(&entry.place, &region);
         }
-        self.filled.push((entry.place.clone(), region));
+        self.filled.push(Filled {
+            place: entry.place.clone(),
+            region,
+            material,
+        });
         let roundness = match (&raw.circle, &shape) {
             (Some(_), Shape::Polygon { points }) => {
                 let side = std::f64::consts::TAU / points.len() as f64;
@@ -309,9 +313,9 @@ impl Lift<'_> {
 
     fn check_bodies_apart(&mut self, place: &Place, region: &Region) {
         let eps = self.eps();
-        let hit = self.filled.iter().find(|(_, r)| r.overlaps(region, eps));
-        if let Some((other, _)) = hit {
-            let found = format!("overlaps {}", other.key);
+        let mut others = self.filled.iter();
+        if let Some(other) = others.find(|f| f.region.overlaps(region, eps)) {
+            let found = format!("overlaps {}", other.place.key);
             self.problems.report(
                 place,
                 found,

@@ -1,9 +1,9 @@
 //! Where bodies and inflows may not start: in walls and behind them; bodies not in closed gates and drains either.
 
-use super::Lift;
 use super::faces::Face;
 use super::geometry::{Region, cross, edges};
 use super::walls::Solid;
+use super::{Filled, Lift};
 use crate::math::{dot, sub};
 use crate::scene::raw::Place;
 use crate::units::shown_bound;
@@ -14,7 +14,7 @@ impl Lift<'_> {
         let eps = self.eps();
         let spacing = self.spacing.unwrap_or(0.0);
         let (mut hits, mut thin) = (Vec::new(), Vec::new());
-        for (place, region) in &self.filled {
+        for Filled { place, region, .. } in &self.filled {
             let plates = self.plates.iter().map(|d| {
                 let remedy = "move the body: material belongs on the left of a gate's way from `from` to `to`";
                 (d, "starts inside the plate of", remedy)

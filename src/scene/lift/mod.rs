@@ -21,6 +21,7 @@ mod pressures;
 mod profile;
 mod run;
 mod scheme;
+mod sound_speed;
 mod unused;
 mod walls;
 
@@ -95,6 +96,14 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     .filter(|_| problems.is_empty())
 }
 
+/// A body lifted, and what it fills.
+struct Filled {
+    place: Place,
+    region: Region,
+    /// Its material, if that is known.
+    material: Option<usize>,
+}
+
 /// What the checks share.
 struct Lift<'r> {
     raw: &'r RawScene,
@@ -104,7 +113,7 @@ struct Lift<'r> {
     /// Particle spacing [m].
     spacing: Option<f64>,
     /// Bodies lifted so far, with what they fill.
-    filled: Vec<(Place, Region)>,
+    filled: Vec<Filled>,
     /// Outflows lifted so far.
     drains: Vec<(Place, Region)>,
     /// Plates of planar gates, where they cover their gap at the start.

@@ -1,7 +1,7 @@
-//! Numerical choices: resolution against the bodies, and the sound speed if the file does not give it.
+//! Numerical choices, and resolution against the bodies.
 
 use super::Lift;
-use crate::scene::raw::{Place, RawMaterial, RawNumerics, RotationWord, YieldWord};
+use crate::scene::raw::{RawNumerics, RotationWord, YieldWord};
 use crate::scene::types::NamedMaterial;
 use crate::solver::{Numerics, Rotation, Scheme, YieldForm};
 
@@ -25,6 +25,7 @@ impl Lift<'_> {
             spacing: raw.spacing.as_ref()?.value.0,
             smoothing_ratio: raw.smoothing_ratio.as_ref()?.value.0,
             sound_speed: sound_speed?,
+            fall_speed: self.fall_speed(sound_speed?),
             scheme: scheme?,
             courant: match &raw.courant {
                 Some(given) => given.value.0,
@@ -130,7 +131,7 @@ impl Lift<'_> {
             return;
         };
         let axes = i32::try_from(self.axes()).unwrap_or(3);
-        let volume: f64 = self.filled.iter().map(|(_, region)| region.measure()).sum();
+        let volume: f64 = self.filled.iter().map(|f| f.region.measure()).sum();
         let particles = volume / spacing.value.0.powi(axes);
         let extent: f64 = (0..self.axes())
             .map(|a| domain.upper[a] - domain.lower[a])
@@ -157,128 +158,6 @@ impl Lift<'_> {
                 "use a coarser spacing or a smaller domain",
             );
         }
-    }
-
-    /// c0 as given, or from the grains' compressibility, or 10 max(sqrt(g H), expected speed).
-    fn sound_speed(
-        &mut self,
-        raw: &RawNumerics,
-        table: &Place,
-        materials: &[Option<NamedMaterial>],
-    ) -> Option<f64> {
-        if raw.given.contains(&"grain_compressibility") {
-            let at = raw.grain_compressibility.as_ref()?;
-            return self.speed_of_grains(raw, at.value.0, &at.place, materials);
-        }
-        let expected = raw.expected_speed.as_ref()?.value.0;
-        if let Some(given) = &raw.sound_speed {
-            if given.value.0 < expected {
-                self.problems.report(
-                    &given.place,
-                    format!("{} m/s", given.value.0),
-                    format!("at least expected_speed, {expected} m/s; ten times that is usual"),
-                    "raise sound_speed, or leave it out",
-                );
-                return None;
-            }
-            let wave = (self.gravity_size() * self.material_height().unwrap_or(0.0)).sqrt();
-            if given.value.0 < wave {
-                self.problems.report(
-                    &given.place,
-                    format!(
-                        "{} m/s, by which weight alone would more than double the density",
-                        given.value.0
-                    ),
-                    format!("at least sqrt(g H), {wave:.3} m/s here; ten times that is usual"),
-                    "raise sound_speed, or leave it out",
-                );
-                return None;
-            }
-            return Some(given.value.0);
-        }
-        let domain = self.domain.as_ref()?;
-        let (lower, upper) = (self.height(domain.lower), self.height(domain.upper));
-        let height = self.material_height().unwrap_or((upper - lower).abs());
-        let wave = (self.gravity_size() * height).sqrt();
-        let speed = 10.0 * wave.max(expected);
-        if speed > 0.0 && speed.is_finite() {
-            return Some(speed);
-        }
-        self.problems.report(
-            &table.child("expected_speed"),
-            "no gravity and no expected speed",
-            "a speed above 0 m/s, from which the sound speed follows",
-            "add expected_speed, for example \"1 m/s\"",
-        );
-        None
-    }
-
-    /// Steps follow the scene's sound speed.
-    fn check_own_sound_speeds(&mut self, fastest: f64) {
-        let entries = self.raw.materials.as_ref().map(|m| &m.value.0);
-        for entry in entries.into_iter().flatten() {
-            let own = match &entry.value {
-                Some(RawMaterial::MuI(raw)) => &raw.sound_speed,
-                Some(RawMaterial::BarkerGray(raw)) => &raw.sound_speed,
-                Some(RawMaterial::ConstantFriction(raw)) => &raw.sound_speed,
-                Some(RawMaterial::Fluid(raw)) => &raw.sound_speed,
-                None => continue,
-            };
-            if let Some(own) = own.as_ref().filter(|own| own.value.0 > fastest) {
-                self.problems.report(
-                    &own.place,
-                    format!("{} m/s", own.value.0),
-                    format!("at most the scene's sound speed, {fastest} m/s"),
-                    "raise numerics.sound_speed, which bounds the step",
-                );
-            }
-        }
-    }
-
-    /// c0 = 1/sqrt(K_t rho_s0 phi_max), which must be one for all materials.
-    fn speed_of_grains(
-        &mut self,
-        raw: &RawNumerics,
-        compressibility: f64,
-        place: &Place,
-        materials: &[Option<NamedMaterial>],
-    ) -> Option<f64> {
-        if let Some(other) = &raw.sound_speed {
-            self.problems.report(
-                place,
-                format!("grain_compressibility beside {}", other.place.key),
-                "one of grain_compressibility and sound_speed: each follows from the other",
-                "delete one of them",
-            );
-            return None;
-        }
-        let mut densities = materials
-            .iter()
-            .flatten()
-            .map(|m| m.material.rest_density());
-        let rho = densities.next()?;
-        if densities.any(|other| (other - rho).abs() > 1e-9 * rho) {
-            self.problems.report(
-                place,
-                "materials of different densities at rest",
-                "grain_compressibility only where all materials weigh the same: there is one sound speed",
-                "give sound_speed instead",
-            );
-            return None;
-        }
-        Some(1.0 / (compressibility * rho).sqrt())
-    }
-
-    /// Height of the highest material over the lowest wall or material; `None` without bodies.
-    pub(super) fn material_height(&self) -> Option<f64> {
-        let tops = self.filled.iter().map(|(_, region)| {
-            let (lower, upper) = region.bounds();
-            let (a, b) = (self.height(lower), self.height(upper));
-            (a.min(b), a.max(b))
-        });
-        let (low, high) = tops.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))?;
-        let floor = self.heights.iter().copied().fold(low, f64::min);
-        Some(high - floor)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Sleep: what it changes, what wakes it, what it saves.
 
 use super::{Unit, case};
+use sandgate::component::StaysAwake;
 use sandgate::scene;
 
 /// A small heap, with and without sleep.
@@ -180,7 +181,57 @@ until = 5
     unit.run_to(5.0);
     let speed = (2.0 * unit.get("energy.kinetic") / 10.0).sqrt();
     println!("{speed:.1e} m/s");
-    // Quiet is 3e-6 c0.
+    // Quiet is 3e-5 of sqrt(g H), about 1 m/s.
     assert!(speed > 1e-6 && speed < 3e-5, "{speed}");
     assert_eq!(unit.component.particles().asleep[0], 0);
+}
+
+/// A sound speed that was raised for other reasons makes no flow slow, and a law without static friction creeps for ever.
+#[test]
+fn what_sleeps_does_not_depend_on_the_sound_speed() {
+    let text = |numerics: &str, material: &str| {
+        format!(
+            r#"
+name = "mud"
+[domain]
+lower = [-0.1, -0.1]
+upper = [0.4, 0.3]
+[numerics]
+spacing = "10 mm"
+{numerics}
+[materials.mud]
+{material}
+[bodies.mud]
+material = "mud"
+box = {{ lower = [0, 0], upper = [0.1, 0.05] }}
+[walls.tank]
+polyline = [[0, 0.2], [0, 0], [0.3, 0], [0.3, 0.2]]
+[run]
+step = 0.5
+until = 1
+"#
+        )
+    };
+    let awake = |numerics: &str, material: &str| {
+        let unit = Unit::new(&scene::parse("mud", &text(numerics, material)).unwrap());
+        unit.component.stays_awake()
+    };
+    let mud = |viscosity: &str| {
+        format!("law = \"fluid\"\ndensity = 1000\nyield_stress = 40\nconsistency = {viscosity}")
+    };
+    let fast = "expected_speed = 15";
+    assert_eq!(awake(fast, &mud("0.003")), None);
+    assert_eq!(awake("", &mud("0.003")), None);
+    for numerics in ["", fast] {
+        assert_eq!(
+            awake(numerics, &mud("0.005")),
+            Some(StaysAwake::Creeping(0))
+        );
+    }
+    let beads = |law: &str| format!("law = \"{law}\"\npreset = \"glass_beads\"");
+    assert_eq!(awake("", &beads("mu_i")), None);
+    assert_eq!(
+        awake("", &beads("barker_gray")),
+        Some(StaysAwake::Creeping(0))
+    );
 }
