@@ -29,6 +29,7 @@ pub(crate) fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// The name of the file whose replacement is called `name`, if it is one that was not finished.
+#[cfg(feature = "cli")]
 pub(crate) fn unfinished(name: &str) -> Option<&str> {
     let (finished, number) = name.rsplit_once(UNFINISHED)?;
     number
@@ -112,6 +113,11 @@ mod tests {
         assert_eq!(names(folder.path()), ["page.html", "page.html.new"]);
         let own = std::fs::read(folder.path().join("page.html.new")).unwrap();
         assert_eq!(own, b"a user's");
+    }
+
+    #[cfg(feature = "cli")]
+    #[test]
+    fn names_of_what_was_not_finished_are_known() {
         assert_eq!(unfinished("page.html.new"), Some("page.html"));
         assert_eq!(unfinished("page.html.new12"), Some("page.html"));
         assert_eq!(unfinished("page.html.newer"), None);

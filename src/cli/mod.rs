@@ -83,6 +83,8 @@ pub fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
+    #[cfg(unix)]
+    stop::hear_file_limits();
     match dispatch(&cli.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(CliError::ReaderGone) => ExitCode::SUCCESS,

@@ -27,6 +27,13 @@ pub(super) fn on_interrupt(doing: &'static str) -> Result<Arc<AtomicBool>, CliEr
     Ok(flag)
 }
 
+/// A file that may not grow (`ulimit -f`, batch systems) fails as one on a full disk does, and does not end the program.
+#[cfg(unix)]
+pub(super) fn hear_file_limits() {
+    // Heard by a flag that nobody reads. Where the system refuses it stays as it is.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
 #[cfg(unix)]
 fn on_polite_signals(flag: &Arc<AtomicBool>) -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGTERM};

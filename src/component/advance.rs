@@ -166,6 +166,7 @@ impl Component {
             return refuse("t", t, format!("{} s, the current time", shown(time)));
         }
         let end = t + h;
+        self.check_fineness("do_step", "t + h", end)?;
         if end <= time {
             let (now, next) = (shown(time), shown(time.next_up()));
             let allowed = format!("a time after {now} s, the current time: {next} s or more");

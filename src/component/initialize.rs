@@ -52,16 +52,7 @@ impl Component {
         if !start.is_finite() {
             return refuse("start time", start, "a finite time".to_owned());
         }
-        // Times are doubles, and must tell internal steps apart.
-        let fine = MOST_ROUNDING * self.scene.numerics.acoustic_step();
-        let latest = fine / f64::EPSILON;
-        if start.abs() > latest {
-            let allowed = format!(
-                "at most {latest:.1e} s from 0, where doubles still tell times {fine:.1e} s apart, a thousandth of this scene's \
-                 acoustic step; count time from a later origin"
-            );
-            return refuse("start time", start, allowed);
-        }
+        self.check_fineness(call, "start time", start)?;
         if let Some(stop) = stop
             && !(stop.is_finite() && stop >= start)
         {
@@ -75,6 +66,30 @@ impl Component {
             );
         }
         Ok(())
+    }
+
+    /// Times are doubles, and must tell internal steps apart.
+    pub(super) fn check_fineness(
+        &self,
+        call: &'static str,
+        what: &str,
+        time: f64,
+    ) -> Result<(), Error> {
+        let fine = MOST_ROUNDING * self.scene.numerics.acoustic_step();
+        let latest = fine / f64::EPSILON;
+        if time.abs() <= latest {
+            return Ok(());
+        }
+        Err(Error::BadArgument {
+            call,
+            what: what.to_owned(),
+            found: format!("{} s", shown(time)),
+            allowed: format!(
+                "at most {} s from 0, where doubles still tell times {fine:.1e} s apart, a thousandth of this scene's acoustic \
+                 step; count time from a later origin",
+                latest.floor()
+            ),
+        })
     }
 
     /// Initialization -> Stepping. Outputs are those of the start.

@@ -23,7 +23,7 @@ pub struct Bagnold {
 
 impl Bagnold {
     /// For a depth H > 0 [m], gravity across the layer g_n > 0 and along it [m/s^2]; `None` where nothing flows (the slope
-    /// is not above the angle of rest), nothing is steady (it is too steep), or there is no such profile (cohesion).
+    /// is not above the angle of rest), nothing is steady (it is too steep), or there is no such profile (cohesion, or water in the pores, which bears and moves with them).
     #[must_use]
     pub fn new(
         material: &Material,
@@ -32,7 +32,7 @@ impl Bagnold {
         gravity_along: f64,
     ) -> Option<Self> {
         let tan = gravity_along / gravity_across;
-        if material.cohesion != 0.0 || !tan.is_finite() {
+        if material.cohesion != 0.0 || material.is_saturated() || !tan.is_finite() {
             return None;
         }
         let inertial_number = inertial_number_at(material, tan)?;

@@ -137,6 +137,20 @@ impl Material {
         self.flows() && self.viscous.is_linear()
     }
 
+    /// Viscosity that a Newton's fluid is computed with by scheme implicit [Pa s]: its own, or what its artificial viscosity is worth
+    /// where that is more, alpha rho h c0/(2 (D + 2)), at a smoothing length h [m] and the scene's sound speed [m/s].
+    #[must_use]
+    pub fn computed_viscosity(&self, dimensions: f64, h: f64, sound_speed: f64) -> f64 {
+        let c0 = self.sound_speed.unwrap_or(sound_speed);
+        let least =
+            self.artificial_viscosity * self.rest_density() * h * c0 / (2.0 * (dimensions + 2.0));
+        if self.is_newtonian() {
+            self.viscous.consistency.max(least)
+        } else {
+            self.viscous.consistency
+        }
+    }
+
     /// Whether its pores are full of a fluid that carries part of the pressure.
     #[inline]
     #[must_use]

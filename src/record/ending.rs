@@ -70,7 +70,7 @@ impl std::fmt::Display for Ending {
                     false => write!(f, "cut short near byte {byte} ({why})")?,
                 }
                 if let Some(last) = last {
-                    write!(f, ", last message at {} s", *last as f64 * 1e-9)?;
+                    write!(f, ", last message at {} s", *last as f64 / 1e9)?;
                 }
                 if *damaged {
                     return write!(

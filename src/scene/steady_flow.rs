@@ -30,7 +30,7 @@ pub(super) struct Here {
 }
 
 impl SteadyFlow {
-    /// Velocity, density and shear rate at a place, for the artificial sound speed c0 [m/s].
+    /// Velocity, density and shear rate at a place, for the material's artificial sound speed c0 [m/s].
     // A call of its own: inlined, its powers are taken before the loop over particles, also of what a body at rest does
     // not have. Nobody uses them, but Valgrind (tests/it/shared_library.rs) tells of numbers that are not there.
     #[inline(never)]

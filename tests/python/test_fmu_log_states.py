@@ -316,7 +316,7 @@ def goes_on_c(folder):
     library.check(library.lib.sandgate_terminate(library.handle))
     library.free()
     files = sorted(name for name in os.listdir(folder) if name.startswith("run"))
-    assert [name for name in files if name.endswith(".part")] == ["run-0-0001.mcap.part"], files
+    assert sum(name.endswith(".part") for name in files) == 1, files
     assert "run-0-0000.mcap" in files and len(files) > 3, files
     for name in files:
         if not name.endswith(".part"):

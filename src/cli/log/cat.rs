@@ -102,7 +102,7 @@ fn as_json(message: &RawMessage, value: Value) -> Value {
 
 fn as_text(message: &RawMessage, value: &Value) -> String {
     let topic = below_base(&message.channel.topic);
-    let time = message.log_time as f64 * 1e-9;
+    let time = message.log_time as f64 / 1e9;
     let number = message.sequence;
     format!(
         "{time:>14.9} s  {topic}  #{number}  {}",

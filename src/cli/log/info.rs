@@ -78,13 +78,13 @@ fn as_text(survey: &Survey) -> String {
         );
     }
     if let Some((first, last)) = survey.times() {
-        let (first, last) = (first as f64 * 1e-9, last as f64 * 1e-9);
+        let (first, last) = (first as f64 / 1e9, last as f64 / 1e9);
         line("time", format!("{first} to {last} s simulated"));
     }
     if let Some((first, last)) = survey.published()
         && run.get("deterministic").is_none_or(|d| d != "true")
     {
-        let (from, took) = (utc(first / 1_000_000_000), (last - first) as f64 * 1e-9);
+        let (from, took) = (utc(first / 1_000_000_000), (last - first) as f64 / 1e9);
         line("wall clock", format!("{from}, for {took:.3} s"));
     }
     line("ended", ended(survey));

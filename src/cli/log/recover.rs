@@ -21,7 +21,7 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let done = recover(&args.from, &args.to)?;
     let until = done.last.map_or(String::new(), |last| {
-        format!(" up to t = {} s", last as f64 * 1e-9)
+        format!(" up to t = {} s", last as f64 / 1e9)
     });
     say(&format!(
         "{}: {}\n{}: {} messages{until}, {} metadata records, {} attachments",

@@ -57,7 +57,7 @@ fn fill(log: &Path, folder: &Path, window: &Window) -> Result<(String, Ending), 
                 if !(stands && window.has(log_time)) {
                     continue;
                 }
-                let (time, number) = (log_time as f64 * 1e-9, particles.len());
+                let (time, number) = (log_time as f64 / 1e9, particles.len());
                 let name = format!("particles-{number:06}.vtp");
                 save(&folder.join(&name), &particle_data(&cloud))?;
                 particles.push((time, name));

@@ -4,6 +4,7 @@ use super::session::Session;
 use super::summary::{extremes, short};
 use crate::cli::remarks::remarks;
 use crate::scene::Inflow;
+use crate::scene::Scene;
 
 /// A larger share of fast mass than that of single splashes is worth a word, and of the time in which a gate stood still.
 const MUCH: f64 = 0.05;
@@ -94,6 +95,23 @@ fn held(
     })
 }
 
+/// Sound speeds by their keys: the scene's, and those of materials that have a lower one.
+fn sound_speeds(scene: &Scene) -> String {
+    let mut all = vec![format!(
+        "numerics.sound_speed, {:.3} m/s here",
+        scene.numerics.sound_speed
+    )];
+    for named in &scene.materials {
+        if let Some(own) = named.material.sound_speed {
+            all.push(format!(
+                "materials.{}.sound_speed, {own:.3} m/s",
+                named.name
+            ));
+        }
+    }
+    all.join("; ")
+}
+
 /// The sound speed is too low for what flowed.
 fn fast(session: &Session) -> Option<String> {
     let (_, (share, time)) = extremes(session, "validity.share_fast")?;
@@ -101,11 +119,11 @@ fn fast(session: &Session) -> Option<String> {
         let time = (1e6 * time).round() / 1e6;
         format!(
             "note: at t = {time} s {:.0} % of the mass under pressure moved faster than a fifth of the sound speed\n  \
-             (numerics.sound_speed, {:.3} m/s here): so fast it is compressed by its own flow, and thin layers may gain speed.\n  \
-             Give numerics.expected_speed, the largest speed that you expect, or a larger numerics.sound_speed; the run takes\n  \
+             ({}): so fast it is compressed by its own flow, and thin layers may gain speed.\n  \
+             Give numerics.expected_speed, the largest speed that you expect, or a larger sound_speed; the run takes\n  \
              longer in proportion. See validity.share_fast over time, and docs/theory.md, \"Limits\".",
             100.0 * share,
-            session.component.scene().numerics.sound_speed,
+            sound_speeds(session.component.scene()),
         )
     })
 }
@@ -116,12 +134,12 @@ fn squeezed(session: &Session) -> Option<String> {
     (share > MUCH).then(|| {
         let time = (1e6 * time).round() / 1e6;
         format!(
-            "note: at t = {time} s {:.0} % of the mass under pressure was squeezed by more than a twentieth (numerics.sound_speed,\n  \
-             {:.3} m/s here), where grains or water would not have given way: forces and pressures are those of a spring.\n  \
-             Leave it room to go where a wall or a gate moves into it, or give a larger numerics.sound_speed; the run takes\n  \
+            "note: at t = {time} s {:.0} % of the mass under pressure was squeezed by more than a twentieth\n  \
+             ({}), where grains or water would not have given way: forces and pressures are those of a spring.\n  \
+             Leave it room to go where a wall or a gate moves into it, or give a larger sound_speed; the run takes\n  \
              longer in proportion. See validity.share_squeezed over time, and docs/theory.md, \"Limits\".",
             100.0 * share,
-            session.component.scene().numerics.sound_speed,
+            sound_speeds(session.component.scene()),
         )
     })
 }

@@ -30,12 +30,16 @@ impl Recorder {
             return Ok(());
         }
         match self.follow(place.next(), component, "rotated") {
+            // There is still no room: the next one is tried when it is time for it.
+            Ok(following) if broke_off && following.failure().is_some() => {
+                self.began = component.time();
+                following.discard()
+            }
             Ok(mut following) => {
                 following.first_time = self.first_time;
                 following.snapshots = self.snapshots;
                 self.go_on(following, |before| before.finish(component, "rotated"))
             }
-            // There is still no room: the next one is tried when it is time for it.
             Err(_) if broke_off => {
                 self.began = component.time();
                 Ok(())

@@ -21,7 +21,7 @@ pub(super) struct Standing<'a, const D: usize> {
     pub(super) sides: [Option<(f64, f64)>; D],
 }
 
-/// Fills what lies behind edges at which a fixed box meets another fixed wall, and gives points of boxes the normal of the nearest
+/// Fills what lies behind edges at which a fixed box meets another fixed wall, and gives points of all boxes the normal of the nearest
 /// face that nothing covers.
 pub(super) fn join_boxes<const D: usize>(
     scene: &Scene,
@@ -32,14 +32,16 @@ pub(super) fn join_boxes<const D: usize>(
     if solids.is_empty() {
         return;
     }
-    for fill in fill::fills(scene, points, &solids, standing) {
+    let stays = |solid: &&Solid<D>| !scene.walls[usize::from(solid.group)].rigid;
+    let fixed: Vec<&Solid<D>> = solids.iter().filter(stays).collect();
+    for fill in fill::fills(scene, points, &fixed, standing) {
         let velocity = narrow(&scene.walls[usize::from(fill.group)].velocity);
         points.push(fill.place, velocity, fill.normal, 1.0, fill.group);
     }
     face::face_openly(scene, points, &solids, &standing.sides);
 }
 
-/// A fixed box of a scene, and the lattice of its points.
+/// A box of a scene, and the lattice of its points.
 struct Solid<const D: usize> {
     group: u16,
     lower: Vector<D>,
@@ -90,10 +92,10 @@ impl<const D: usize> Solid<D> {
     }
 }
 
-/// The fixed boxes of a scene.
+/// The boxes of a scene, where they are at the start.
 fn solids<const D: usize>(scene: &Scene) -> Vec<Solid<D>> {
     let solid = |(n, wall): (usize, &Wall)| match &wall.geometry {
-        WallGeometry::Box { lower, upper } if !wall.rigid => Some(Solid::new(
+        WallGeometry::Box { lower, upper } => Some(Solid::new(
             n as u16,
             narrow(lower),
             narrow(upper),

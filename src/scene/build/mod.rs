@@ -44,7 +44,6 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         Scheme::PaperB(_) => elements::<D>(scene),
         Scheme::Implicit | Scheme::PaperA(_) => walls::<D>(scene, &periodic),
     };
-    let movers = movers(scene, &walls);
     let sources: Vec<_> = scene.inflows.iter().map(|i| source(scene, i)).collect();
     let sinks = scene
         .outflows
@@ -77,6 +76,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         };
         join_boxes(scene, &mut walls, &standing);
     }
+    let movers = movers(scene, &walls);
     let plan = Plan {
         numerics: scene.numerics.clone(),
         gravity: narrow(&scene.domain.gravity),

@@ -130,7 +130,7 @@ fn grains<const D: usize>(
             let mut density = material.density_under(load, sound_speed);
             let mut shear_rate = 0.0;
             if let Some(flow) = &flow {
-                let here = flow.at(&three(&position), scene.numerics.sound_speed);
+                let here = flow.at(&three(&position), sound_speed);
                 velocity = add(&velocity, &narrow(&here.velocity));
                 (density, shear_rate) = (here.density, here.shear_rate);
             }

@@ -4,7 +4,7 @@ use super::Lift;
 use super::faces::Face;
 use super::geometry::Region;
 use crate::math::{cross, dot, length, normalized, sub};
-use crate::scene::raw::{Entry, RawInflow, RawOutflow};
+use crate::scene::raw::{Entry, Place, RawInflow, RawOutflow};
 use crate::scene::types::{Inflow, NamedMaterial, Outflow, Point};
 
 /// How far above its bound a number may be by rounding, over the bound [1].
@@ -41,6 +41,7 @@ impl Lift<'_> {
         if let (Some(way), Some(spacing)) = (normalized(&velocity?), self.spacing) {
             let face = Face::new([from, to, span], way, spacing);
             self.check_inflow_against_walls(&entry.place, &face);
+            self.check_rows_inside(&entry.place, &face);
         }
         let density = Self::rest_density(materials, material?)?;
         let width = if self.axisymmetric() {
@@ -59,6 +60,28 @@ impl Lift<'_> {
             max_rate: density * width * flux,
         };
         Some(inflow)
+    }
+
+    /// Rows appear inside the domain.
+    fn check_rows_inside(&mut self, place: &Place, face: &Face) {
+        let Some(domain) = &self.domain else {
+            return;
+        };
+        let outside = |x: &Point, k: usize| {
+            !domain.periodic[k] && !(domain.lower[k]..=domain.upper[k]).contains(&x[k])
+        };
+        let axes = self.axes();
+        let row = face.row();
+        let lost = row.flat_map(|x| (0..axes).map(move |k| (x, k)));
+        if let Some((x, k)) = lost.into_iter().find(|(x, k)| outside(x, *k)) {
+            let name = Self::axis_name(k);
+            self.problems.report(
+                place,
+                format!("a row of particles at {name} = {:.6} m", x[k]),
+                format!("rows, half a spacing before the face, at {name} from {} to {} m, the domain", domain.lower[k], domain.upper[k]),
+                "move the face and its span into the domain, turn the velocity, or enlarge domain.lower and domain.upper",
+            );
+        }
     }
 
     /// Material leaves the face on its left; gives face times normal velocity [m^2/s] or [m^3/s].

@@ -49,7 +49,11 @@ impl Lift<'_> {
                 continue;
             }
             let degrees = |tan: f64| format!("{:.2} deg", tan.atan().to_degrees());
-            let found = if across > 0.0 {
+            let found = if material.is_saturated() {
+                "grains with a pore_fluid".to_owned()
+            } else if material.cohesion != 0.0 {
+                "grains with cohesion".to_owned()
+            } else if across > 0.0 {
                 format!("a slope of {}", degrees(along / across))
             } else {
                 "no gravity".to_owned()
@@ -58,11 +62,11 @@ impl Lift<'_> {
                 &at.place,
                 found,
                 format!(
-                    "a slope steeper than the angle of rest of {}, {}, at which its friction balances the weight; no cohesion",
+                    "a slope steeper than the angle of rest of {}, {}, at which its friction balances the weight; no cohesion and no pore_fluid",
                     named.name,
                     degrees(material.law.static_friction()),
                 ),
-                "correct domain.slope or domain.gravity, or delete velocity_profile",
+                "correct the material, domain.slope or domain.gravity, or delete velocity_profile",
             );
         }
     }

@@ -21,7 +21,7 @@ table! {
     RawDepth {
         /// Foot of the line, on the bed.
         required foot: Coordinates<Length>;
-        /// Direction of the line, of any length; upwards along the last axis if left out.
+        /// Direction of the line, of any length; along the axis that gravity mostly points against if left out.
         optional up: Coordinates<Ratio>;
         /// Length of the line; up to the domain's edge if left out.
         optional length: Length, in Range::above(0.0);
@@ -35,7 +35,7 @@ table! {
     RawInterfaceStress {
         /// Foot of the line, on the bed.
         required foot: Coordinates<Length>;
-        /// Direction of the line, of any length; upwards along the last axis if left out.
+        /// Direction of the line, of any length; along the axis that gravity mostly points against if left out.
         optional up: Coordinates<Ratio>;
         /// Length of the line; up to the domain's edge if left out.
         optional length: Length, in Range::above(0.0);
@@ -53,7 +53,7 @@ table! {
         required to: Coordinates<Length>;
         /// Number of feet.
         required count: Whole, in Range::within(2.0, 10_000.0);
-        /// Direction of the lines, of any length; upwards along the last axis if left out.
+        /// Direction of the lines, of any length; along the axis that gravity mostly points against if left out.
         optional up: Coordinates<Ratio>;
         /// Length of the lines; up to the domain's edge if left out.
         optional length: Length, in Range::above(0.0);
@@ -117,7 +117,7 @@ table! {
         required origin: Coordinates<Length>;
         /// Direction along the bed, of any length.
         required direction: Coordinates<Ratio>;
-        /// Direction of depth, of any length; upwards along the last axis if left out.
+        /// Direction of depth, of any length; along the axis that gravity mostly points against if left out.
         optional up: Coordinates<Ratio>;
         /// Only this material; all if left out.
         optional material: Text;

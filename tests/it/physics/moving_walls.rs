@@ -177,3 +177,52 @@ fn sand_rests_in_a_bin_that_moves() {
     println!("differs by {worst:.1e} m and m/s; the still one has {fastest:.1e} m/s");
     assert!(worst < 1e-12);
 }
+
+/// A piston on a floor, so slow that water stays at rest: it bears rho g h^2/2, the floor nothing across, be it a box that moves, one that
+/// stands, or a chain. Coarse, 15 rows: 1.5 %.
+#[test]
+fn a_piston_bears_what_is_pushed_on_its_foot() {
+    let chain = "polyline = [[0.1, 0.5], [0.1, 0]]\nmotion = \"rigid\"\nvelocity = [-0.002, 0]";
+    let stands = "box = { lower = [0, 0], upper = [0.1, 0.5] }";
+    let moves = format!("{stands}\nmotion = \"rigid\"\nvelocity = [-0.002, 0]");
+    for piston in [chain, stands, &moves] {
+        let text = format!(
+            r#"
+name = "piston"
+[domain]
+lower = [-0.4, -0.2]
+upper = [1, 0.6]
+[numerics]
+spacing = 0.02
+[materials.water]
+law = "fluid"
+preset = "water"
+[bodies.water]
+material = "water"
+box = {{ lower = [0.1, 0], upper = [0.6, 0.3] }}
+[walls.floor]
+polyline = [[-0.2, 0], [0.6, 0], [0.6, 0.5]]
+slip = "free_slip"
+[walls.piston]
+slip = "free_slip"
+{piston}
+[gauges.piston]
+kind = "force"
+on = "wall.piston"
+[run]
+step = 0.02
+until = 2
+"#
+        );
+        let mut unit = Unit::new(&scene::parse("piston", &text).unwrap());
+        unit.run_to(1.6);
+        let mut force = 0.0;
+        for k in 1..=20 {
+            unit.run_to(1.6 + 0.02 * f64::from(k));
+            force += unit.get("gauge.piston.force_x") / 20.0;
+        }
+        let thrust = 0.5 * 1000.0 * G * 0.3 * 0.3;
+        println!("{force} N for {}", -thrust);
+        assert!((force / -thrust - 1.0).abs() < 0.015, "{piston}: {force} N");
+    }
+}

@@ -24,7 +24,9 @@ pub(super) fn face_openly<const D: usize>(
             let mut foot = *x;
             foot[face.axis] = solid.out_of(face, 0.0);
             let beyond = add(&foot, &scale(0.5 * spacing, &face.normal()));
-            let other = |n: usize| group[n] != solid.group && fixed(group[n]);
+            // What moves may leave a box that stays, and seldom what it slides on.
+            let covers = |other: u16| fixed(other) || !fixed(solid.group);
+            let other = |n: usize| group[n] != solid.group && covers(group[n]);
             places.nearest(&beyond, STANDS, other).is_some()
         };
         let mut found = Vec::new();

@@ -71,7 +71,7 @@ impl<const D: usize> Edge<'_, D> {
 pub(super) fn fills<const D: usize>(
     scene: &Scene,
     points: &WallPoints<D>,
-    solids: &[Solid<D>],
+    solids: &[&Solid<D>],
     standing: &Standing<'_, D>,
 ) -> Vec<Fill<D>> {
     let site = Site::new(scene, points, standing);
