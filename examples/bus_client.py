@@ -67,11 +67,9 @@ class Component:
         classes = {}
         for name, text in self.ask("describe")["schemas"].items():
             files = descriptor_pb2.FileDescriptorSet.FromString(base64.b64decode(text)).file
-            pool, waiting = descriptor_pool.DescriptorPool(), list(files)
-            while waiting:  # files after those they import
-                file = next(f for f in waiting if not any(w.name in f.dependency for w in waiting))
+            pool = descriptor_pool.DescriptorPool()
+            for file in files:  # each stands behind those that it imports
                 pool.Add(file)
-                waiting.remove(file)
             classes[name] = message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
         return classes
 

@@ -32,16 +32,31 @@ pub trait DescribedEnum {
     fn describe() -> EnumDescriptorProto;
 }
 
-/// The bytes of an MCAP schema record for `M`: a serialised `FileDescriptorSet`, one file a message, in order of
-/// file name. The same bytes at every call.
+/// The bytes of an MCAP schema record for `M`: a serialised `FileDescriptorSet`, one file a message, each behind
+/// those that it depends on, so that readers can take them one after the other. The same bytes at every call.
 #[must_use]
 pub fn schema<M: Described>() -> Vec<u8> {
     let mut files = BTreeMap::new();
     M::add_files(&mut files);
-    FileDescriptorSet {
-        file: files.into_values().collect(),
+    let mut file = Vec::with_capacity(files.len());
+    let main = file_name(M::FULL_NAME);
+    move_with_dependencies(&main, &mut files, &mut file);
+    FileDescriptorSet { file }.encode_to_vec()
+}
+
+/// Moves the file of this name, and before it all that it needs, from one place to the other; what was moved already stays.
+fn move_with_dependencies(
+    name: &str,
+    from: &mut BTreeMap<String, FileDescriptorProto>,
+    to: &mut Vec<FileDescriptorProto>,
+) {
+    let Some(file) = from.remove(name) else {
+        return;
+    };
+    for needed in &file.dependency {
+        move_with_dependencies(needed, from, to);
     }
-    .encode_to_vec()
+    to.push(file);
 }
 
 /// Name of the file that holds a message: `sandgate.Gauge` is in `sandgate/Gauge.proto`. Google's own keep the names
@@ -336,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn a_schema_holds_every_file_it_needs_once() {
+    fn a_schema_holds_every_file_once_behind_those_it_needs() {
         for set in [
             decode::<SceneUpdate>(),
             decode::<Applied>(),
@@ -347,8 +362,11 @@ mod tests {
             once.dedup();
             assert_eq!(names, once);
             for file in &set.file {
+                let before = names.iter().take_while(|name| **name != file.name());
+                let before: Vec<_> = before.collect();
                 for needed in &file.dependency {
-                    assert!(names.contains(&needed.as_str()), "{needed} is missing");
+                    let stands = before.contains(&&needed.as_str());
+                    assert!(stands, "{needed} is not before {}", file.name());
                 }
                 for field in &file.message_type[0].field {
                     assert!(field.number() > 0, "{}", field.name());

@@ -7,19 +7,29 @@ use crate::record::error::RecordError;
 use crate::record::file::LogFile;
 use crate::wire::convert::{self, nanoseconds, timestamp};
 use crate::wire::foxglove::{Log, LogLevel, SceneUpdate};
-use crate::wire::messages::{AppliedEvent, Command};
+use crate::wire::messages::{AppliedEvent, Command, CommandKind};
 use prost::Message;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 impl Recorder {
-    /// A call from outside, or the reply to one.
+    /// A call from outside, or the reply to one. How long a step took is no part of a deterministic log.
     ///
     /// # Errors
     /// [`RecordError::Required`].
     pub fn record_command(&mut self, command: &Command) -> Result<(), RecordError> {
         let channel = self.channels.command(&mut self.file, command);
         let deterministic = self.options.deterministic;
-        let data = command.encode_to_vec();
+        let timed = deterministic && command.kind() == CommandKind::Reply;
+        let data = match timed.then(|| without_wall_time(&command.body)).flatten() {
+            Some(body) => {
+                let command = Command {
+                    body,
+                    ..command.clone()
+                };
+                command.encode_to_vec()
+            }
+            None => command.encode_to_vec(),
+        };
         write(&mut self.file, deterministic, channel, command.time, &data);
         self.check()
     }
@@ -193,6 +203,14 @@ impl Recorder {
             _ => Ok(()),
         }
     }
+}
+
+/// A reply without its field `wall_us`, if it has it. The text within cannot be part of a string: there quotes are escaped.
+fn without_wall_time(body: &str) -> Option<String> {
+    const FIELD: &str = ",\"wall_us\":";
+    let (before, after) = body.split_once(FIELD)?;
+    let rest = after.trim_start_matches(|c: char| c.is_ascii_digit());
+    Some(format!("{before}{rest}"))
 }
 
 fn write(file: &mut LogFile, deterministic: bool, channel: &mut Channel, time: f64, data: &[u8]) {
