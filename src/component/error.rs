@@ -10,7 +10,7 @@ pub enum Error {
     #[error("cannot build scene: {0}")]
     Setup(String),
     /// A call in the wrong mode.
-    #[error("{call} is not allowed in mode {mode:?}; allowed in {allowed}")]
+    #[error("{call} is not allowed in mode {mode:?}; allowed in {allowed}{}", remedy(*mode))]
     NotAllowedNow {
         /// The call, with the variable if it is about one.
         call: String,
@@ -37,6 +37,14 @@ pub enum Error {
     /// Saved bytes that cannot be used.
     #[error("saved state refused: {0}")]
     Snapshot(String),
+}
+
+/// How calls become possible again after a failed step; elsewhere the modes in which they are say it.
+fn remedy(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Failed => "; a step has failed: restore a saved state or reset",
+        _ => "",
+    }
 }
 
 impl Error {

@@ -76,6 +76,11 @@ mod tests {
             error.to_string(),
             "do_step is not allowed in mode Terminated; allowed in Stepping"
         );
+        let error = check(Call::DoStep, Mode::Failed).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "do_step is not allowed in mode Failed; allowed in Stepping; a step has failed: restore a saved state or reset"
+        );
         let error = check(Call::Terminate, Mode::Instantiated).unwrap_err();
         assert!(error.to_string().ends_with("allowed in Stepping or Failed"));
     }

@@ -170,7 +170,7 @@ fn a_step_that_fails_says_so_and_going_back_heals() {
         "step",
         r#"{"req":"2"}"#,
         "state",
-        "do_step is not allowed in mode Failed; allowed in Stepping",
+        "allowed in Stepping; a step has failed: restore a saved state or reset",
     );
     bench.refused("run", r#"{"req":"3"}"#, "state", "reset or restore first");
     assert!(bench.ok("get", "")["outputs"]["time"].is_number());
