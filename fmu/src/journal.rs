@@ -1,5 +1,5 @@
 //! What an instance tells the world beside its importer: an MCAP log of all traffic, if its parameter `log.path` names a
-//! file, and, where the library was built with the feature `bus`, publications on Zenoh, if `zenoh.config` is not empty.
+//! file, and, where the library was built with the feature `bus`, publications on Zenoh, if `zenoh.config` is not blank.
 //!
 //! Both begin when initialisation ends and end with terminate, reset or free; they watch and never change a bit, but for
 //! set-points that come over Zenoh. What they hold is the business of `sandgate::record` and `sandgate::bus`. Here they
@@ -81,9 +81,9 @@ impl Journal {
             None => "link -lsandgate_fmu_zenoh (docs/c.md)",
         };
         match Network::REFUSAL {
-            Some(why) if name == "zenoh.config" && !text.is_empty() => Err(Fault::border(format!(
-                "{name}: found {text:?}, allowed \"\": {why}{remedy}"
-            ))),
+            Some(why) if name == "zenoh.config" && !text.trim().is_empty() => Err(Fault::border(
+                format!("{name}: found {text:?}, allowed \"\": {why}{remedy}"),
+            )),
             _ => Ok(()),
         }
     }

@@ -36,6 +36,14 @@ pub enum BadEndpoint {
         /// Who reads it.
         advice: Advice,
     },
+    /// Cannot be bound.
+    #[error("cannot listen on {found}: {reason}")]
+    Taken {
+        /// The endpoint.
+        found: String,
+        /// The system's words.
+        reason: String,
+    },
     /// No free port.
     #[error("no free port on {host}: {reason}")]
     NoPort {
@@ -88,6 +96,20 @@ pub(super) fn with_real_port(endpoint: &str) -> Result<String, BadEndpoint> {
         "{protocol}/{host}:{}{tail}",
         SocketAddr::port(&free)
     ))
+}
+
+/// Whether a listener's port can be had now.
+///
+/// # Errors
+/// [`BadEndpoint::Form`], [`BadEndpoint::Taken`].
+pub(super) fn check_port(endpoint: &str) -> Result<(), BadEndpoint> {
+    let (_, host, port) = split(endpoint)?;
+    let plain_host = host.trim_start_matches('[').trim_end_matches(']');
+    let bound = TcpListener::bind((plain_host, port));
+    bound.map(drop).map_err(|error| BadEndpoint::Taken {
+        found: endpoint.to_owned(),
+        reason: error.to_string(),
+    })
 }
 
 /// Every endpoint in a value of Zenoh's configuration: a list, or lists by mode.
@@ -185,7 +207,11 @@ mod tests {
         let real = with_real_port("tcp/127.0.0.1:0#so_sndbuf=65000").unwrap();
         let (_, host, port) = split(&real).unwrap();
         assert!(real.ends_with("#so_sndbuf=65000") && port != 0, "{real}");
-        assert!(TcpListener::bind((host, port)).is_ok());
+        let listener = TcpListener::bind((host, port)).unwrap();
+        let taken = check_port(&real).unwrap_err().to_string();
+        assert!(taken.starts_with(&format!("cannot listen on {real}: ")));
+        drop(listener);
+        assert_eq!(check_port(&real), Ok(()));
         assert_eq!(
             with_real_port("tcp/127.0.0.1:9").unwrap(),
             "tcp/127.0.0.1:9"

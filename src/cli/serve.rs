@@ -19,7 +19,8 @@ use log::Log;
 pub(super) struct Args {
     /// The scene file, for example cases/silo_gate.toml
     case: PathBuf,
-    /// Name in keys, 1 to 64 of a-z 0-9 _ - [default: the scene's name]
+    /// Name in keys, 1 to 64 of a-z 0-9 _ - [default: that of metadata.sandgate in --zenoh-config, else the
+    /// scene's]
     #[arg(long, value_name = "NAME")]
     instance: Option<String>,
     /// Listen on tcp/HOST:PORT, port 0 for a free one; may be given more than once [default: tcp/127.0.0.1:0, or nowhere
@@ -86,8 +87,8 @@ fn realtime_factor(text: &str) -> Result<f64, String> {
 /// [`CliError::Scene`], [`CliError::Bus`], [`CliError::Log`]; [`CliError::Component`] if the scene cannot be built.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let scene = load_scene(&args.case)?;
-    let options = ServeOptions {
-        instance: args.instance.clone().unwrap_or_else(|| scene.name.clone()),
+    let mut options = ServeOptions {
+        instance: scene.name.clone(),
         listen: args.listen.clone(),
         connect: args.connect.clone(),
         config: args.zenoh_config.clone().map(ZenohConfig::File),
@@ -103,7 +104,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             },
         }),
         advice: Advice::CommandLine,
-    };
+    }
+    .with_metadata()?;
+    if let Some(name) = &args.instance {
+        options.instance.clone_from(name);
+    }
     let mut component = Component::new(&scene)?;
     component.set_threads(usize::from(args.threads));
     let stop = stop::on_interrupt("stopping after this step")?;

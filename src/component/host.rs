@@ -16,7 +16,7 @@ pub struct HostSettings {
     pub log_path: String,
     /// `log.required`: whether a log that cannot be written is an error of the step; otherwise it is told once.
     pub log_required: bool,
-    /// `zenoh.config`: Zenoh's configuration, a path or JSON5; "" for no Zenoh.
+    /// `zenoh.config`: Zenoh's configuration, a path or JSON5; blank for no Zenoh.
     pub zenoh_config: String,
 }
 
@@ -28,6 +28,12 @@ impl HostSettings {
             log_required: scene.log.required,
             zenoh_config: String::new(),
         }
+    }
+
+    /// Whether Zenoh is asked for: a blank configuration is none.
+    #[must_use]
+    pub fn publishes(&self) -> bool {
+        !self.zenoh_config.trim().is_empty()
     }
 }
 

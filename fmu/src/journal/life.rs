@@ -1,6 +1,6 @@
 //! How the log and the publications of an instance begin, and how they end.
 
-use sandgate::component::{Causality, Component, HostSettings, Mode, Start, ValueKind};
+use sandgate::component::{Causality, Component, Mode, Start, ValueKind};
 use sandgate::fmi;
 use sandgate::record::{RecordOptions, Recorder};
 use sandgate::wire::Unobserved;
@@ -21,12 +21,8 @@ impl Journal {
     /// Initialisation is about to end, at `start` [s]: begins the log and opens the network, if there shall be any. Gives
     /// whether it did.
     pub(crate) fn open(&mut self, component: &Component, start: f64) -> Result<bool, Fault> {
-        let HostSettings {
-            log_path,
-            zenoh_config,
-            ..
-        } = component.host_settings();
-        let (logs, publishes) = (!log_path.is_empty(), !zenoh_config.is_empty());
+        let settings = component.host_settings();
+        let (logs, publishes) = (!settings.log_path.is_empty(), settings.publishes());
         if !logs && !publishes {
             return Ok(false);
         }
@@ -141,7 +137,7 @@ impl Journal {
     pub(crate) fn may_refuse(&self, component: &Component) -> bool {
         let settings = component.host_settings();
         let logs = self.log.is_none() && !settings.log_path.is_empty();
-        let publishes = self.network.is_none() && !settings.zenoh_config.is_empty();
+        let publishes = self.network.is_none() && settings.publishes();
         settings.log_required && (logs || publishes)
     }
 
@@ -154,7 +150,7 @@ impl Journal {
             return Ok(begun);
         }
         let mut faults = Vec::new();
-        if self.network.is_none() && !settings.zenoh_config.is_empty() {
+        if self.network.is_none() && settings.publishes() {
             match self.connect(there) {
                 Ok(mut network) => {
                     network

@@ -7,8 +7,9 @@
 use super::desk::{Aside, Desk, Entrances};
 use super::press::Press;
 use super::replies::{ended, send_replies};
-use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn, wanted};
+use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn};
 use crate::bus::Protocol;
+use crate::bus::advice::Advice;
 use crate::bus::error::BusError;
 use crate::bus::keys::Keys;
 use crate::bus::notes::{Notes, WAITING_NOTES, tell_refused, tell_taken, tell_unlogged};
@@ -57,7 +58,10 @@ impl Beside {
     /// # Errors
     /// As [`Server::open`](super::Server::open).
     pub fn open(component: &Component, options: &ServeOptions) -> Result<Self, BusError> {
-        let options = wanted::named(options)?;
+        let options = ServeOptions {
+            advice: Advice::Configuration,
+            ..options.with_metadata()?
+        };
         let keys = Keys::new(&options.instance)?;
         let (session, reach) = session::open(&options, Some(&keys))?;
         let (batches, publications) = queue();

@@ -64,6 +64,17 @@ pub struct ServeOptions {
     pub advice: Advice,
 }
 
+impl ServeOptions {
+    /// With the name, and the leave to listen for other machines, that stand in the configuration (`metadata: {sandgate:
+    /// {instance: "silo-7", allow_open_listener: true}}`), if they do.
+    ///
+    /// # Errors
+    /// [`BusError::Config`].
+    pub fn with_metadata(&self) -> Result<Self, BusError> {
+        wanted::named(self)
+    }
+}
+
 /// Zenoh's own configuration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ZenohConfig {
@@ -74,7 +85,7 @@ pub enum ZenohConfig {
 }
 
 impl ZenohConfig {
-    /// What a parameter says: JSON5 if it begins with a brace, else the path of a file; none if it is empty.
+    /// What a parameter says: JSON5 if it begins with a brace, else the path of a file; none if it is blank.
     #[must_use]
     pub fn read(text: &str) -> Option<Self> {
         match text.trim_start().chars().next()? {

@@ -3,7 +3,7 @@
 use super::wanted::{self, Wanted, as_json, insert};
 use super::{ServeOptions, failed};
 use crate::bus::advice::Advice;
-use crate::bus::endpoints::{self, DEFAULT_LISTEN};
+use crate::bus::endpoints::{self, BadEndpoint, DEFAULT_LISTEN};
 use crate::bus::error::{BusError, words};
 use crate::bus::keys::Keys;
 use crate::bus::reach::Reach;
@@ -125,20 +125,29 @@ fn with_real_ports(
         insert(&mut config, "listen/endpoints", &as_json(&listeners))?;
         match zenoh::open(config.clone()).wait() {
             Ok(session) => return Ok((session, listeners)),
-            // Somebody took the free port in the meantime.
-            Err(_) if listeners != wanted && attempt < PORT_ATTEMPTS => attempt += 1,
             Err(error) => {
-                return Err(BusError::Zenoh {
-                    doing: format!(
-                        "listen on {} (port in use? choose another {})",
-                        listeners.join(", "),
-                        advice.listen()
-                    ),
-                    reason: words(error),
-                });
+                // Zenoh does not say which step of opening failed.
+                let bound = listeners.iter().try_for_each(|l| endpoints::check_port(l));
+                match bound {
+                    // Somebody took the free port in the meantime.
+                    Err(_) if listeners != wanted && attempt < PORT_ATTEMPTS => attempt += 1,
+                    bound => return Err(not_opened(bound.err(), words(error), advice)),
+                }
             }
         }
     }
+}
+
+/// Why there is no session; a listener that cannot be bound gets the advice to choose another.
+fn not_opened(unbound: Option<BadEndpoint>, reason: String, advice: Advice) -> BusError {
+    let doing = match unbound {
+        Some(unbound) => format!(
+            "{unbound} (port in use? choose another {})",
+            advice.listen()
+        ),
+        None => "cannot open the session".to_owned(),
+    };
+    BusError::Zenoh { doing, reason }
 }
 
 fn refuse_twin(session: &Session, keys: &Keys, advice: Advice) -> Result<(), BusError> {

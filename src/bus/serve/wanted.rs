@@ -145,13 +145,10 @@ fn source(options: &ServeOptions) -> String {
     }
 }
 
-/// The options with what stands in the configuration for who has no command line: `metadata: {sandgate: {instance: "silo-7",
-/// allow_open_listener: true}}`.
+/// The options with what stands in the configuration: `metadata: {sandgate: {instance: "silo-7", allow_open_listener:
+/// true}}`.
 pub(super) fn named(options: &ServeOptions) -> Result<ServeOptions, BusError> {
-    let mut options = ServeOptions {
-        advice: Advice::Configuration,
-        ..options.clone()
-    };
+    let mut options = options.clone();
     let bad = |reason: String| BusError::Config {
         file: "metadata.sandgate".to_owned(),
         reason,
@@ -170,7 +167,7 @@ pub(super) fn named(options: &ServeOptions) -> Result<ServeOptions, BusError> {
     for (key, value) in own.into_iter().flatten() {
         match (key.as_str(), value) {
             ("instance", Value::String(name)) => options.instance.clone_from(name),
-            ("allow_open_listener", Value::Bool(open)) => options.allow_open_listener = *open,
+            ("allow_open_listener", Value::Bool(open)) => options.allow_open_listener |= *open,
             _ => {
                 return Err(bad(format!(
                     "found {key}: {value}, allowed are instance, a text, and allow_open_listener, true or false"

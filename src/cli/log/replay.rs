@@ -29,7 +29,7 @@ pub(super) struct Args {
     again: bool,
     #[command(flatten)]
     choice: Choice,
-    /// Name in keys [default: that of the log]
+    /// Name in keys [default: that of metadata.sandgate in --zenoh-config, else that of the log]
     #[arg(long, value_name = "NAME")]
     instance: Option<String>,
     /// Publish although a live component has that name
@@ -86,8 +86,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         });
     };
     let own = topic.split('/').nth(2).unwrap_or_default();
-    let options = ServeOptions {
-        instance: args.instance.clone().unwrap_or_else(|| own.to_owned()),
+    let mut options = ServeOptions {
+        instance: own.to_owned(),
         listen: args.listen.clone(),
         connect: args.connect.clone(),
         config: args.zenoh_config.clone().map(ZenohConfig::File),
@@ -95,7 +95,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         realtime_factor: None,
         lost: None,
         advice: Advice::CommandLine,
-    };
+    }
+    .with_metadata()?;
+    if let Some(name) = &args.instance {
+        options.instance.clone_from(name);
+    }
     let stop = stop::on_interrupt("stopping after this message")?;
     let outlet = Outlet::open(&options, args.force)?;
     say(&format!(
