@@ -33,6 +33,8 @@ pub(super) struct Publisher {
     base: String,
     outputs: Vec<(Arc<str>, Output)>,
     pending: Pending,
+    /// What was drawn of the scene when it was last published.
+    drawn: Option<SceneUpdate>,
     /// Counts batches: every output is published once a batch.
     sequence: u64,
     queue: Giver,
@@ -58,6 +60,7 @@ impl Publisher {
             base: base.to_owned(),
             outputs,
             pending: Pending::default(),
+            drawn: None,
             sequence: 0,
             queue,
             last,
@@ -68,7 +71,17 @@ impl Publisher {
 
     /// Remembers the batch for those who come late, and hands it on.
     fn send(&self, batch: Vec<Publication>) {
+        self.send_and(batch, |_| {});
+    }
+
+    /// As [`send`](Self::send), after `forget` has taken out what no longer holds.
+    fn send_and(
+        &self,
+        batch: Vec<Publication>,
+        forget: impl FnOnce(&mut BTreeMap<Arc<str>, Publication>),
+    ) {
         let mut last = lock(&self.last);
+        forget(&mut last);
         for publication in &batch {
             last.insert(publication.key.clone(), publication.clone());
         }
@@ -95,13 +108,21 @@ impl Publisher {
         batch.push(publication(keys::stats(&self.base).into(), &stats));
         for frame in convert::gate_frames(component).unwrap_or_default() {
             let frame: FrameTransform = frame;
-            batch.push(publication(keys::frames(&self.base).into(), &frame));
+            let key = keys::frame(&self.base, &frame.child_frame_id);
+            batch.push(publication(key.into(), &frame));
         }
         if self.particles_wanted.load(Relaxed) {
             let cloud: PointCloud = convert::point_cloud(component);
             batch.push(publication(keys::particles(&self.base).into(), &cloud));
         }
         batch
+    }
+
+    /// The scene at simulated time `time` [s].
+    fn scene(&mut self, component: &Component, time: f64) -> Publication {
+        self.drawn = Some(scene_update(component.scene(), 0.0));
+        let scene = scene_update(component.scene(), time);
+        publication(keys::scene(&self.base).into(), &scene)
     }
 
     fn applied(
@@ -153,8 +174,7 @@ impl Observer for Publisher {
         let applied = self.applied(event, 0, start, stop.unwrap_or(f64::NAN), source);
         let mut batch = self.outputs(component, None);
         batch.insert(0, applied);
-        let scene = scene_update(component.scene(), start);
-        batch.push(publication(keys::scene(&self.base).into(), &scene));
+        batch.push(self.scene(component, start));
         self.send(batch);
     }
 
@@ -205,7 +225,13 @@ impl Observer for Publisher {
         let applied = self.applied(event, step, component.time(), f64::NAN, source);
         let mut batch = self.outputs(component, None);
         batch.insert(0, applied);
-        self.send(batch);
+        // Fixed parameters may be others there, and walls and gauges elsewhere.
+        if self.drawn != Some(scene_update(component.scene(), 0.0)) {
+            batch.push(self.scene(component, component.time()));
+        }
+        // Particles are of the time before, unless somebody wanted them now; lines for people stay true.
+        let particles = keys::particles(&self.base);
+        self.send_and(batch, |last| drop(last.remove(particles.as_str())));
     }
 
     fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str) {

@@ -1,4 +1,4 @@
-//! Keys: Zenoh key expressions, which are also the topics of log files.
+//! Keys: Zenoh key expressions, which are also the topics of log files (but frames share one topic there).
 //!
 //! All are below a base `<root>/v1/<instance>`. A variable's name is a group and the rest, split at the first dot:
 //! the output `gauge.weir.depth` is published at `<base>/out/gauge/weir.depth`; the input `gate.main.opening` is set at
@@ -72,7 +72,14 @@ pub fn scene(base: &str) -> String {
     format!("{base}/out/scene")
 }
 
-/// Key of [`FrameTransform`](super::foxglove::FrameTransform): where these frames are.
+/// Key of the [`FrameTransform`](super::foxglove::FrameTransform) of one frame (`gate.NAME`, `wall.NAME`): where it is. A key
+/// of its own, so that the last value of each can be asked for.
+#[must_use]
+pub fn frame(base: &str, name: &str) -> String {
+    format!("{base}/out/frames/{name}")
+}
+
+/// Topic of all [`FrameTransform`](super::foxglove::FrameTransform)s in logs.
 #[must_use]
 pub fn frames(base: &str) -> String {
     format!("{base}/out/frames")
@@ -127,6 +134,10 @@ mod tests {
         assert_eq!(
             input(&base, "gate.main.opening"),
             "sandgate/v1/silo_gate/in/gate.main.opening"
+        );
+        assert_eq!(
+            frame(&base, "gate.main"),
+            "sandgate/v1/silo_gate/out/frames/gate.main"
         );
         assert_eq!(
             control(&base, "rpc", "step"),

@@ -251,7 +251,10 @@ impl Player<'_> {
     }
 
     fn publish(&mut self, message: RawMessage) -> Result<(), CliError> {
-        let key = format!("{}/{}", self.base, below_base(&message.channel.topic));
+        let key = match frame(&message) {
+            Some(name) => keys::frame(&self.base, &name),
+            None => format!("{}/{}", self.base, below_base(&message.channel.topic)),
+        };
         let schema = &message.channel.schema.name;
         self.outlet.publish(&key, schema, message.data)?;
         self.published += 1;
