@@ -146,6 +146,7 @@ impl Journal {
                 &self.owned,
                 listener(&mut self.log, &mut Unobserved),
             );
+            network.tell_step(self.interface);
         }
         Ok(())
     }

@@ -17,6 +17,8 @@ pub(super) enum Note {
     Call(Exchange),
     /// A set-point refused.
     Refused(SetPoint, Refusal),
+    /// A set-point that gave way to a newer one of its variable.
+    Superseded(SetPoint),
 }
 
 /// A call and its reply as text.
@@ -39,6 +41,7 @@ impl Notes {
         while let Ok(note) = self.0.try_recv() {
             match note {
                 Note::Refused(point, refusal) => tell_refused(time, &point, &refusal, observer),
+                Note::Superseded(point) => tell_superseded(time, &point, observer),
                 Note::Call(mut exchange) => {
                     observer.on_command(&command(time, &mut exchange, CommandKind::Request));
                     observer.on_reply(&command(time, &mut exchange, CommandKind::Reply));
@@ -78,6 +81,12 @@ pub(super) fn tell_taken(time: f64, point: &SetPoint, observer: &mut dyn Observe
     observer.on_command(&wish(time, point, "ok"));
 }
 
+/// A set-point that no step will use, because a newer one of its variable came before it could be taken. No line for people:
+/// it is as meant.
+pub(super) fn tell_superseded(time: f64, point: &SetPoint, observer: &mut dyn Observer) {
+    observer.on_command(&wish(time, point, "superseded"));
+}
+
 /// A set-point that was refused: who sent what, and a line with the reason.
 pub(super) fn tell_refused(
     time: f64,
@@ -90,11 +99,11 @@ pub(super) fn tell_refused(
     observer.on_log(time, LogLevel::Warning, "bus", &text);
 }
 
-/// At the end: calls that were answered and are not in the log, because too many waited for it.
+/// At the end: calls that were answered, and set-points that were refused or superseded, and that are not in the log, because too many waited for it.
 pub(super) fn tell_unlogged(time: f64, count: u64, observer: &mut dyn Observer) {
     if count > 0 {
         let text =
-            format!("{count} calls that were answered are not in this log: too many came at once");
+            format!("{count} calls and set-points are not in this log: too many came at once");
         observer.on_log(time, LogLevel::Warning, "bus", &text);
     }
 }

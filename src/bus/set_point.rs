@@ -5,8 +5,8 @@ use super::json;
 use super::refusal::{Code, Refusal};
 use serde_json::Value;
 
-/// Longest body that is kept after it was refused (bytes): values are far shorter.
-const LONGEST_REFUSED: usize = 4096;
+/// Longest body that is kept to be told only (bytes): values are far shorter.
+const LONGEST_TOLD: usize = 4096;
 
 /// A set-point: a value, or `{"value": ..., "client": "..."}` to say who sent it.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,10 +72,10 @@ impl SetPoint {
         })
     }
 
-    /// What is kept of one that was refused, to tell it: not its values.
+    /// What is kept of one that was refused or superseded, to tell it: not its values.
     #[must_use]
-    pub(super) fn refused(variable: &str, body: &[u8]) -> Self {
-        let told = &body[..body.len().min(LONGEST_REFUSED)];
+    pub(super) fn told(variable: &str, body: &[u8]) -> Self {
+        let told = &body[..body.len().min(LONGEST_TOLD)];
         Self {
             variable: cut(variable),
             values: Vec::new(),
@@ -110,11 +110,11 @@ mod tests {
 
     #[test]
     fn what_is_told_of_a_refused_one_is_who_sent_what_in_bounds() {
-        let told = SetPoint::refused("v", br#"{"value":7,"client":"plc"}"#);
+        let told = SetPoint::told("v", br#"{"value":7,"client":"plc"}"#);
         assert_eq!(told.client, "plc");
         assert_eq!(told.body, r#"{"value":7,"client":"plc"}"#);
-        let long = SetPoint::refused(&"v".repeat(60_000), &[b'7'; 60_000]);
+        let long = SetPoint::told(&"v".repeat(60_000), &[b'7'; 60_000]);
         assert_eq!(long.variable.len(), 67);
-        assert_eq!(long.body.len(), LONGEST_REFUSED);
+        assert_eq!(long.body.len(), LONGEST_TOLD);
     }
 }

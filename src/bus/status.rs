@@ -4,7 +4,7 @@
 use super::json::number;
 use crate::component::{Component, MassLedger, Mode, Statistics};
 use serde_json::{Map, Value, json};
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Where the component stood after its last call.
@@ -20,6 +20,8 @@ pub struct Status {
     pub mode: Mode,
     /// Simulated over wall time if it runs freely (infinite: as fast as possible); none if it waits for `step`.
     pub free_running: Option<f64>,
+    /// Whether inputs out of their range are clamped.
+    pub saturates: bool,
     /// Account of material.
     pub ledger: MassLedger,
     /// Figures of the solver.
@@ -56,6 +58,7 @@ impl Status {
             t_ns: nanoseconds(component.time()),
             mode: component.mode(),
             free_running,
+            saturates: component.saturates_inputs(),
             ledger: component.ledger(),
             statistics,
         }
@@ -106,8 +109,6 @@ pub(super) struct Shared {
     busy: Mutex<Option<Busy>>,
     /// Why the log ended before its time, if it did.
     log_failure: Mutex<Option<String>>,
-    /// Set-points that wait for the stepping thread.
-    pub(super) waiting_set_points: AtomicUsize,
     /// Set-points refused since the start.
     pub(super) refused_set_points: AtomicU64,
     /// Publications dropped because the publishing thread was behind.
@@ -135,7 +136,6 @@ impl Shared {
             status: Mutex::new(status),
             busy: Mutex::new(None),
             log_failure: Mutex::new(None),
-            waiting_set_points: AtomicUsize::new(0),
             refused_set_points: AtomicU64::new(0),
             dropped_publications: AtomicU64::new(0),
             unlogged_calls: AtomicU64::new(0),
@@ -145,6 +145,15 @@ impl Shared {
 
     pub(super) fn update(&self, status: Status) {
         *lock(&self.status) = status;
+    }
+
+    /// Whether inputs out of their range were clamped when the component was last looked at.
+    pub(super) fn saturates(&self) -> bool {
+        lock(&self.status).saturates
+    }
+
+    pub(super) fn set_saturates(&self, saturates: bool) {
+        lock(&self.status).saturates = saturates;
     }
 
     pub(super) fn has_log_failure(&self) -> bool {

@@ -12,7 +12,7 @@ use super::reply::Reply;
 use super::request::Request;
 use super::set_point::SetPoint;
 use super::status::{Busy, Shared};
-use super::tasks::{Asked, Task, WAITING_TASKS};
+use super::tasks::{Asked, Taker, Task, WAITING_REQUESTS};
 use super::watch::{Lost, Watch, WhenLost};
 use crate::component::Component;
 use crate::wire::Observer;
@@ -20,7 +20,7 @@ use crate::wire::foxglove::LogLevel;
 use crate::wire::messages::CommandKind;
 use pace::Pace;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
 /// How often the stepping thread looks whether it shall stop when nobody asks anything.
@@ -31,7 +31,7 @@ pub(super) struct Stepper<'a> {
     pub(super) component: Component,
     pub(super) protocol: Protocol,
     pub(super) shared: &'a Shared,
-    pub(super) tasks: Receiver<Task>,
+    pub(super) tasks: Taker,
     pub(super) watch: Watch,
 }
 
@@ -69,11 +69,11 @@ impl Stepper<'_> {
                 false => 0,
             };
             // What waits in the queue may be the request that was missed. Set-points that keep coming are not.
-            if overdue > WAITING_TASKS && self.is_lost(observer) {
+            if overdue > WAITING_REQUESTS && self.is_lost(observer) {
                 break;
             }
             let wait = if overdue > 0 { Duration::ZERO } else { wait };
-            match self.tasks.recv_timeout(wait) {
+            match self.tasks.take(wait) {
                 Ok(task) => {
                     if self.carry_out(task, observer) {
                         break;
@@ -98,7 +98,7 @@ impl Stepper<'_> {
     /// component back.
     pub(super) fn close(self, why: &Refusal, observer: &mut dyn Observer) -> Component {
         let time = self.component.time();
-        while let Ok(task) = self.tasks.try_recv() {
+        for task in self.tasks.take_all() {
             match task {
                 Task::SetPoint(point) => tell_refused(time, &point, why, observer),
                 Task::Call {
@@ -138,7 +138,6 @@ impl Stepper<'_> {
 
     /// Takes a set-point, or says why not.
     fn set_point(&mut self, point: &SetPoint, observer: &mut dyn Observer) {
-        self.shared.waiting_set_points.fetch_sub(1, Relaxed);
         let done = self
             .protocol
             .set_point(&mut self.component, point, observer);

@@ -3,11 +3,13 @@
 
 use super::json::number;
 use super::refusal::{Code, Refusal};
+use super::set_point::SetPoint;
 use crate::component::{
     self, Causality, Component, Start, ValueKind, ValueReference, Variability, Variable,
     VariableTable,
 };
 use serde_json::{Map, Value, json};
+use std::collections::HashMap;
 
 /// Inputs of one request, ready for [`Component::set`].
 #[derive(Debug, Default, PartialEq)]
@@ -56,6 +58,42 @@ impl Assignment {
     }
 }
 
+/// Variables that can be set at communication points, by name.
+pub(super) struct Settable(HashMap<String, Variable>);
+
+impl Settable {
+    pub(super) fn of(table: &VariableTable) -> Self {
+        let rows = table.rows().iter().filter(|row| {
+            let tunable = row.variability == Variability::Tunable;
+            let settable = row.causality == Causality::Input
+                || row.causality == Causality::Parameter && tunable;
+            settable && row.kind != ValueKind::Text && !table.is_for_host(row)
+        });
+        Self(rows.map(|row| (row.name.clone(), row.clone())).collect())
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether a component that can be set will take this. Only for what waits: the component itself decides, and some
+    /// that are not sure it takes.
+    pub(super) fn surely_takes(&self, point: &SetPoint, saturates: bool) -> bool {
+        let Some(row) = self.0.get(&point.variable) else {
+            return false;
+        };
+        let (least, most) = match row.range {
+            Some(range) if !(saturates && row.causality == Causality::Input) => range,
+            _ => (f64::MIN, f64::MAX),
+        };
+        let fits = |value: &f64| {
+            let whole = row.kind == ValueKind::Real || value.fract() == 0.0;
+            whole && (least..=most).contains(value)
+        };
+        point.values.len() == row.len() && point.values.iter().all(fits)
+    }
+}
+
 /// The rows that a request names; all (arrays whole, not their elements) if it names none.
 pub(super) fn rows<'t>(
     table: &'t VariableTable,
@@ -72,6 +110,16 @@ pub(super) fn rows<'t>(
             .filter(|v| v.element_of.is_none() && !table.is_for_host(v))
             .collect()),
     }
+}
+
+/// Elements of arrays by name: the array's name, and which one.
+pub(super) fn elements(table: &VariableTable) -> HashMap<String, (String, usize)> {
+    let rows = table.rows().iter().filter_map(|row| {
+        let (array, at) = row.element_of?;
+        let array = table.by_reference(array)?;
+        Some((row.name.clone(), (array.name.clone(), at)))
+    });
+    rows.collect()
 }
 
 /// Present values by name.

@@ -58,6 +58,12 @@ impl Component {
         std::mem::take(&mut self.notes)
     }
 
+    /// Whether inputs out of their range are clamped and not refused: `saturate_inputs`.
+    #[must_use]
+    pub fn saturates_inputs(&self) -> bool {
+        self.life.saturate_inputs
+    }
+
     /// The value as it is taken: inputs a little out of range, or with `saturate_inputs` far, are clamped.
     fn accept(&self, row: &Variable, value: f64, notes: &mut Vec<String>) -> Result<f64, Error> {
         if row.causality == Causality::Input

@@ -163,7 +163,8 @@ messages! {
         /// Request or reply as JSON text, as it came or went.
         #[prost(string, tag = "8")]
         pub body: String,
-        /// Replies and set-points: "ok" or the error's code; empty in requests.
+        /// Replies and set-points: "ok" or the error's code; of a set-point that a newer one of its variable replaced before
+        /// it could be taken "superseded"; empty in requests.
         #[prost(string, tag = "9")]
         pub status: String,
     } with {

@@ -22,8 +22,8 @@ from bus_client import Component, open_session  # noqa: E402
 class Server:
     """The program, serving; its endpoint is the one that it printed."""
 
-    def __init__(self, *arguments):
-        command = [os.environ["SANDGATE"], "serve", str(SCENE), "--threads", "1", *arguments]
+    def __init__(self, *arguments, scene=SCENE):
+        command = [os.environ["SANDGATE"], "serve", str(scene), "--threads", "1", *arguments]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.endpoint = None
         for line in self.process.stdout:
@@ -44,8 +44,8 @@ class Server:
 
 
 @contextlib.contextmanager
-def served(*arguments):
-    server = Server(*arguments)
+def served(*arguments, scene=SCENE):
+    server = Server(*arguments, scene=scene)
     try:
         with open_session(server.endpoint) as session:
             yield server, session, Component(session, "small_silo", client="pytest")

@@ -1,5 +1,6 @@
 """A served silo, watched and driven by Python clients: `SANDGATE` is the program, `SANDGATE_ROOT` the source tree."""
 
+import base64
 import contextlib
 import json
 import os
@@ -18,6 +19,7 @@ import time
 
 import pytest
 import zenoh
+from google.protobuf.descriptor_pb2 import FileDescriptorSet
 
 sys.path.insert(0, os.path.dirname(__file__))
 
@@ -328,6 +330,111 @@ def test_who_comes_late_gets_the_last_values(session, silo):
         assert is_error and "stand in the message of their output" in reply["message"], part
 
 
+def test_the_newest_set_point_counts_however_many_came(tmp_path):
+    """A thousand while a step runs: the last of each variable is taken, and the log says what became of the others."""
+    path = tmp_path / "served.mcap"
+    block = {"congestion_control": zenoh.CongestionControl.BLOCK}
+    with served("--log", str(path)) as (server, session, silo):
+        step = threading.Thread(target=lambda: silo.ask("step", dt_ns=1_000_000_000))
+        step.start()
+        until(lambda: silo.ask("status")["busy"])
+        session.put(f"{BASE}/in/saturate_inputs", json.dumps({"value": True, "client": "quiet"}), **block)
+        for n in range(1000):
+            session.put(f"{BASE}/in/{GATE}", json.dumps({"value": n / 1000, "client": "chatty"}), **block)
+        # One that is out of range takes no place of one that counts.
+        session.put(f"{BASE}/in/{GATE}", "7", **block)
+        assert silo.ask("status")["busy"], "the step must outlast the set-points"
+        step.join()
+        names = [GATE, "saturate_inputs"]
+        taken = {GATE: 1.0, "saturate_inputs": True}
+        until(lambda: silo.ask("get", outputs=names)["outputs"] == taken)
+        assert silo.ask("status")["refused_set_points"] == 0
+        silo.ask("step")
+        server.end()
+    points = [p for p in logged(path)["@in/set-point/request"] if p.client == "chatty"]
+    assert {p.status for p in points[:-1]} == {"superseded"}
+    assert points[-1].status == "ok" and json.loads(points[-1].body)["value"] == 0.999
+    assert len(points) == 1000
+    command = [os.environ["SANDGATE"], "log", "redrive", "--check", "--threads", "1", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_who_comes_late_gets_the_place_of_each_gate(tmp_path):
+    scene = tmp_path / "two.toml"
+    plate = '[gates.lid]\nfrom = ["3 cm", "14 cm"]\nto = ["5 cm", "14 cm"]\n\n'
+    scene.write_text(SCENE.read_text().replace("[outflows.drain]", plate + "[outflows.drain]"))
+    with served(scene=scene) as (_, session, silo):
+        silo.ask("step")
+        FrameTransform = silo.message_classes()["foxglove.FrameTransform"]
+        found = {}
+        for reply in session.get(f"{BASE}/out/**"):
+            if "/out/frames/" in (key := str(reply.ok.key_expr)):
+                found[key] = FrameTransform.FromString(reply.ok.payload.to_bytes()).child_frame_id
+        assert found == {f"{BASE}/out/frames/gate.{name}": f"gate.{name}" for name in ("lid", "main")}
+
+
+def test_going_to_a_state_of_other_parameters_publishes_its_scene(session, silo):
+    SceneUpdate = silo.message_classes()["foxglove.SceneUpdate"]
+
+    def drawn():
+        [reply] = session.get(f"{BASE}/out/scene")
+        return [e.cubes for e in SceneUpdate.FromString(reply.ok.payload.to_bytes()).entities if e.id == "gate.main"]
+
+    silo.ask("step")
+    state, first = silo.ask("save")["state"], drawn()
+    silo.ask("reset", inputs={"solver.resolution_scale": 1.25})
+    assert drawn() != first
+    subscriber, arrived = subscribe(session, f"{BASE}/out/scene")
+    silo.ask("restore", state=state)
+    assert drawn() == first
+    until(lambda: not arrived.empty())
+    # To a state of the same scene: nothing new to draw.
+    silo.ask("restore", state=state)
+    silo.ask("status")
+    assert arrived.qsize() == 1
+    subscriber.undeclare()
+
+
+def test_particles_of_the_time_before_are_not_kept_over_a_jump():
+    with served() as (_, session, silo):
+        subscriber, arrived = subscribe(session, f"{BASE}/out/particles")
+        until(lambda: silo.ask("step") and not arrived.empty())
+        subscriber.undeclare()
+
+        def forgotten():
+            silo.ask("reset")
+            [reply] = session.get(f"{BASE}/out/particles")
+            return reply.ok is None
+
+        # Until the component knows that nobody wants them any more, they are those of the time after.
+        until(forgotten)
+
+
+def test_schemas_stand_behind_those_they_need(silo):
+    for text in silo.ask("describe")["schemas"].values():
+        known = set()
+        for file in FileDescriptorSet.FromString(base64.b64decode(text)).file:
+            assert known.issuperset(file.dependency), file.name
+            known.add(file.name)
+
+
+def test_equal_requests_give_equal_deterministic_logs(tmp_path):
+    scene = tmp_path / "silo.toml"
+    usual = 'particles_every = "50 ms"'
+    scene.write_text(SCENE.read_text().replace(usual, f"{usual}\ndeterministic = true"))
+    logs = [tmp_path / "first" / "served.mcap", tmp_path / "second" / "served.mcap"]
+    for log in logs:
+        log.parent.mkdir()
+        with served("--log", str(log), scene=scene) as (server, session, _):
+            for n in range(5):
+                body = json.dumps({"req": str(n), "inputs": {GATE: n / 5}})
+                [(_, reply)] = raw(session, f"{BASE}/@rpc/step", body)
+                assert reply["wall_us"] > 0
+            server.end()
+    assert logs[0].read_bytes() == logs[1].read_bytes()
+
+
 def test_particles_are_made_only_for_somebody():
     with served() as (_, session, silo):
         silo.ask("step")
@@ -496,6 +603,39 @@ def test_only_users_with_their_password_get_in_and_do_what_the_list_allows(tmp_p
             assert Component(guest, "small_silo").ask("status")["refused_set_points"] == 1
     finally:
         server.end()
+
+
+def test_the_name_may_stand_in_the_configuration(tmp_path):
+    config = tmp_path / "zenoh.json5"
+    config.write_text("{metadata: {sandgate: {instance: 'silo-7'}}}")
+    for more, name in ([], "silo-7"), (["--instance", "silo-8"], "silo-8"):
+        server = Server("--zenoh-config", str(config), *more)
+        try:
+            with open_session(server.endpoint) as session:
+                assert Component(session, name).ask("status")["ok"]
+        finally:
+            server.end()
+    config.write_text("{metadata: {sandgate: {name: 'silo-7'}}}")
+    command = [os.environ["SANDGATE"], "serve", str(SCENE), "--zenoh-config", str(config)]
+    refused = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert refused.returncode == 2 and "allowed are instance" in refused.stderr, refused
+
+
+def test_a_session_that_cannot_open_says_why(tmp_path):
+    """Only a port that cannot be had gets the advice to choose another."""
+    config = tmp_path / "zenoh.json5"
+    config.write_text("{transport: {auth: {usrpwd: {dictionary_file: '/no/such/file'}}}}")
+    command = [os.environ["SANDGATE"], "serve", str(SCENE)]
+    refused = subprocess.run([*command, "--zenoh-config", str(config)], capture_output=True, text=True, timeout=60)
+    assert refused.returncode != 0 and "cannot open the session" in refused.stderr, refused
+    assert "port in use" not in refused.stderr
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        endpoint = f"tcp/127.0.0.1:{taken.getsockname()[1]}"
+        refused = subprocess.run([*command, "--listen", endpoint], capture_output=True, text=True, timeout=60)
+    assert refused.returncode != 0, refused
+    assert f"cannot listen on {endpoint}: " in refused.stderr and "choose another with --listen" in refused.stderr
 
 
 def test_a_name_is_served_once():

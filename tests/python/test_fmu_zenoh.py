@@ -171,6 +171,79 @@ def test_set_points_hold_from_the_next_step_but_the_importer_wins(version, tmp_p
 
 
 @both
+def test_the_newest_set_point_counts_however_many_came(version, tmp_path):
+    path = tmp_path / "run.mcap"
+    with Published(version, log__path=str(path)) as p:
+        block = {"congestion_control": zenoh.CongestionControl.BLOCK}
+        p.session.put(f"{p.client.base}/in/{RATE}", '{"value": 0.25, "client": "quiet"}', **block)
+        for n in range(500):
+            p.session.put(f"{p.client.base}/in/{GATE}", json.dumps({"value": n / 500, "client": "chatty"}), **block)
+        p.client.ask("status")
+        p.fmu.step(0.0, H)
+        assert p.fmu.get([GATE, RATE]) == [499 / 500, 0.25]
+        assert p.client.ask("status")["refused_set_points"] == 0
+    said = subprocess.run([PROGRAM, "log", "cat", "--json", path], capture_output=True, text=True, check=True).stdout
+    lines = [line for line in map(json.loads, said.splitlines()) if "/@in/" in line["topic"]]
+    became = [line["value"]["status"] for line in lines if line["value"]["client"] == "chatty"]
+    assert became == ["superseded"] * 499 + ["ok"]
+    done = subprocess.run([PROGRAM, "log", "redrive", path, "--check"], capture_output=True, text=True)
+    assert done.returncode == 0 and "same bits: 1 steps" in done.stdout, done.stdout + done.stderr
+
+
+@both
+def test_what_clients_ask_is_answered_as_by_a_server(version):
+    with Published(version) as p:
+        p.fmu.step(0.0, H)
+        whole = p.client.ask("get", outputs=["gauge.surface.depth"])["outputs"]["gauge.surface.depth"]
+        name = "gauge.surface.depth[2]"
+        assert p.client.ask("get", outputs=[name])["outputs"] == {name: whole[1]}
+        assert name not in p.client.ask("get")["outputs"]
+        with pytest.raises(Refused) as refused:
+            p.client.ask("step", expect_step=7)
+        assert refused.value.reply["code"] == "not_owner"
+
+
+@both
+def test_status_tells_the_step_of_the_importer(version):
+    with Published(version) as p:
+        assert p.client.ask("status")["busy"] is None
+        step = threading.Thread(target=lambda: p.fmu.step(0.0, 200 * H))
+        step.start()
+        seen = []
+        while step.is_alive():
+            seen.append(p.client.ask("status"))
+        step.join()
+        busy = [s["busy"] for s in seen if s["step"] == 0 and s["busy"]]
+        assert busy and busy[0] == {"verb": "step", "client": f"fmi{version}", "req": ""}
+        assert p.client.ask("status")["busy"] is None
+        with pytest.raises(FMICallException):
+            p.fmu.step(0.0, H)
+        assert p.client.ask("status")["busy"] is None
+
+
+def test_a_state_of_other_parameters_publishes_its_scene():
+    first = Fmu(FMUS[3]).initialize()
+    saved = first.save()
+    first.free()
+    with Published(3, solver__resolution_scale=1.25) as p:
+        def drawn():
+            [reply] = p.session.get(f"{p.client.base}/out/scene")
+            return reply.ok.payload.to_bytes()
+
+        before = drawn()
+        p.fmu.restore(saved)
+        p.client.ask("status")
+        assert drawn() != before
+
+
+@both
+def test_a_blank_configuration_is_none(version):
+    fmu = Fmu(FMUS[version]).initialize(zenoh__config=" \n")
+    assert not any("publishing" in text for _, _, text in fmu.messages)
+    fmu.free()
+
+
+@both
 def test_clamped_set_points_are_told(version):
     with Published(version, saturate_inputs=True) as p:
         heard = []

@@ -45,6 +45,11 @@ impl Network {
         self.0.apply(component, owned, log);
     }
 
+    /// The importer's step begins.
+    pub(super) fn tell_step(&self, interface: &str) {
+        self.0.tell_step(interface);
+    }
+
     pub(super) fn tell_trouble(&self, trouble: Option<String>) {
         self.0.tell_trouble(trouble);
     }

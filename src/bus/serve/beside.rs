@@ -1,8 +1,8 @@
 //! A component that somebody else steps (an FMU's importer, a C program) on the network: it is published and takes
 //! set-points, but time stays with its owner, and requests that would move it are refused.
 //!
-//! Publishing runs on a thread of its own, as for a server; set-points wait in the same bounded queue until the owner's
-//! next step, which takes them.
+//! Publishing runs on a thread of its own, as for a server; set-points wait in the same queue, the last of each variable,
+//! until the owner's next step, which takes them.
 
 use super::desk::{Aside, Desk, Entrances};
 use super::press::Press;
@@ -18,9 +18,9 @@ use crate::bus::queue::queue;
 use crate::bus::reach::Reach;
 use crate::bus::refusal::{Code, Refusal};
 use crate::bus::set_point::SetPoint;
-use crate::bus::status::{Shared, Status, lock};
-use crate::bus::tasks::{Task, WAITING_TASKS};
-use crate::bus::values::{self, Assignment};
+use crate::bus::status::{Busy, Shared, Status, lock};
+use crate::bus::tasks::{Taker, Task, tasks};
+use crate::bus::values::{self, Assignment, Settable};
 use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::foxglove::LogLevel;
 use crate::wire::messages::{AppliedEvent, Command};
@@ -28,7 +28,7 @@ use crate::wire::{Both, Moment, Observer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::sync_channel;
 use std::thread::JoinHandle;
 use zenoh::{Session, Wait as _};
 
@@ -40,7 +40,7 @@ pub struct Beside {
     publisher: Publisher,
     shared: Arc<Shared>,
     aside: Arc<Aside>,
-    tasks: Receiver<Task>,
+    tasks: Taker,
     notes: Notes,
     entrances: Entrances,
     threads: Vec<JoinHandle<()>>,
@@ -66,7 +66,7 @@ impl Beside {
         let (session, reach) = session::open(&options, Some(&keys))?;
         let (batches, publications) = queue();
         let (jobs, replies) = sync_channel(WAITING_REPLIES);
-        let (task_queue, tasks) = sync_channel(WAITING_TASKS);
+        let (task_queue, tasks) = tasks(Settable::of(component.variables()));
         let (note_queue, notes) = sync_channel(WAITING_NOTES);
         let last = Arc::new(LastValues::default());
         let particles_wanted = Arc::new(AtomicBool::new(false));
@@ -87,6 +87,7 @@ impl Beside {
         let aside = Arc::new(Aside {
             description: Protocol::new(keys.base(), None).description(component),
             values: Default::default(),
+            elements: values::elements(component.variables()),
         });
         let desk = Desk {
             keys,
@@ -139,11 +140,10 @@ impl Beside {
     ) {
         self.tell_notes(other);
         self.held.retain(|reference, _| !owned.contains(reference));
-        while let Ok(task) = self.tasks.try_recv() {
+        for task in self.tasks.take_all() {
             let Task::SetPoint(point) = task else {
                 continue; // The desk hands on nothing else.
             };
-            self.shared.waiting_set_points.fetch_sub(1, Relaxed);
             match self.set(component, &point, owned, other) {
                 Ok((reference, values)) => {
                     tell_taken(self.time, &point, other);
@@ -157,6 +157,15 @@ impl Beside {
                 self.refuse(&point, &refusal, other);
             }
         }
+    }
+
+    /// Its owner's step begins: `status` tells so until it is done or has failed.
+    pub fn tell_step(&self, interface: &str) {
+        self.shared.set_busy(Some(Busy {
+            verb: "step",
+            client: interface.to_owned(),
+            req: String::new(),
+        }));
     }
 
     /// Gives the variable and the values that it holds then.
@@ -234,6 +243,7 @@ impl Beside {
     /// Status and values are those of now.
     fn update(&mut self, component: &Component) {
         self.time = component.time();
+        self.shared.set_busy(None);
         self.shared.update(Status::of(component, self.epoch, None));
         let rows = values::rows(component.variables(), None).unwrap_or_default();
         // Values of the component's own rows can be read.
@@ -250,7 +260,7 @@ impl Beside {
     pub fn close(mut self, other: &mut dyn Observer) -> Result<(), BusError> {
         drop(self.entrances);
         let mut both = Both(other, &mut self.publisher);
-        while let Ok(task) = self.tasks.try_recv() {
+        for task in self.tasks.take_all() {
             if let Task::SetPoint(point) = task {
                 tell_refused(self.time, &point, &ended(), &mut both);
             }
@@ -275,6 +285,7 @@ impl Observer for Beside {
     }
 
     fn on_input(&mut self, c: &Component, refs: &[ValueReference], values: &[f64], source: &str) {
+        self.shared.set_saturates(c.saturates_inputs());
         self.publisher.on_input(c, refs, values, source);
     }
 
@@ -287,6 +298,7 @@ impl Observer for Beside {
     }
 
     fn on_failed_step(&mut self) {
+        self.shared.set_busy(None);
         self.publisher.on_failed_step();
     }
 

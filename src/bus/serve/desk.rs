@@ -11,9 +11,10 @@ use crate::bus::refusal::{Code, Refusal};
 use crate::bus::reply::Reply;
 use crate::bus::request::{LONGEST_TOLD, Request};
 use crate::bus::set_point::SetPoint;
-use crate::bus::status::{Shared, Status, lock};
-use crate::bus::tasks::{Task, WAITING_SET_POINTS, WAITING_TASKS};
+use crate::bus::status::{Shared, lock};
+use crate::bus::tasks::{Giver, NoRoom, Task, WAITING_ODD_POINTS, WAITING_REQUESTS};
 use crate::bus::verb::Verb;
+use std::collections::HashMap;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{SyncSender, TrySendError};
 use std::sync::{Arc, Mutex};
@@ -69,7 +70,7 @@ impl Entrances {
 pub(super) struct Desk {
     pub(super) keys: Keys,
     pub(super) shared: Arc<Shared>,
-    pub(super) tasks: SyncSender<Task>,
+    pub(super) tasks: Giver,
     pub(super) notes: SyncSender<Note>,
     pub(super) jobs: SyncSender<Job>,
     /// Where somebody else owns time: what is answered without the component.
@@ -82,18 +83,17 @@ pub(super) struct Aside {
     pub(super) description: Fields,
     /// Values by name as of the last communication point.
     pub(super) values: Mutex<Fields>,
+    /// Elements of arrays by name: the array's name, and which one. Their values stand in the array's.
+    pub(super) elements: HashMap<String, (String, usize)>,
 }
 
 impl Aside {
     /// The answer to anything but `status`.
-    fn answer(&self, request: &Request, status: &Status) -> Result<Fields, Refusal> {
-        if request.expect_step.is_some_and(|step| step != status.step) {
-            let message = format!("the component has done {} steps", status.step);
-            return Err(Refusal::new(Code::Conflict, message));
-        }
+    fn answer(&self, request: &Request) -> Result<Fields, Refusal> {
         match request.verb {
             Verb::Describe => Ok(self.description.clone()),
             Verb::Get => self.get(request.outputs.as_deref()),
+            // Wherever the client believes the component to be.
             verb => Err(Refusal::new(
                 Code::NotOwner,
                 format!(
@@ -112,15 +112,21 @@ impl Aside {
                 values.clone().into(),
             )]));
         };
-        let found = names.iter().map(|name| match values.get(name) {
-            Some(value) => Ok((name.clone(), value.clone())),
-            None => {
-                let known: Vec<&str> = values.keys().map(String::as_str).collect();
-                let known = known.join(", ");
-                let message = format!("unknown variable {name:?}; there are {known}");
-                Err(Refusal::new(Code::UnknownVariable, message))
-            }
-        });
+        let element = |name: &String| {
+            let (array, at) = self.elements.get(name)?;
+            values.get(array)?.get(at)
+        };
+        let found = names
+            .iter()
+            .map(|name| match values.get(name).or_else(|| element(name)) {
+                Some(value) => Ok((name.clone(), value.clone())),
+                None => {
+                    let known: Vec<&str> = values.keys().map(String::as_str).collect();
+                    let known = known.join(", ");
+                    let message = format!("unknown variable {name:?}; there are {known}");
+                    Err(Refusal::new(Code::UnknownVariable, message))
+                }
+            });
         let found: Result<Fields, Refusal> = found.collect();
         Ok(Fields::from_iter([("outputs".to_owned(), found?.into())]))
     }
@@ -169,7 +175,7 @@ impl Desk {
         }
         if let Some(aside) = &self.aside {
             let status = self.shared.status();
-            let reply = match aside.answer(&request, &status) {
+            let reply = match aside.answer(&request) {
                 Ok(fields) => Reply::success(&request.req, &status, fields),
                 Err(refusal) => Reply::refusal(&request.req, &refusal, &status),
             };
@@ -181,10 +187,12 @@ impl Desk {
             body,
             asked: Box::new(waiting),
         };
-        let (refusal, task) = match self.tasks.try_send(task) {
-            Ok(()) => return,
-            Err(TrySendError::Full(task)) => (busy(WAITING_TASKS, "tasks"), task),
-            Err(TrySendError::Disconnected(task)) => (ended(), task),
+        let Err((why, task)) = self.tasks.call(task) else {
+            return;
+        };
+        let refusal = match why {
+            NoRoom::Full => busy(WAITING_REQUESTS, "requests"),
+            NoRoom::Ended => ended(),
         };
         if let Task::Call { request, asked, .. } = task {
             let reply = Reply::refusal(&request.req, &refusal, &self.shared.status());
@@ -208,9 +216,7 @@ impl Desk {
             status: reply.status(),
             reply: reply.body.clone(),
         };
-        if self.notes.try_send(Note::Call(exchange)).is_err() {
-            self.shared.unlogged_calls.fetch_add(1, Relaxed);
-        }
+        self.keep(Note::Call(exchange));
     }
 
     fn on_input(&self, sample: &Sample) {
@@ -224,23 +230,34 @@ impl Desk {
             SetPoint::parse(variable, &bytes)
         });
         let handed_on = read.and_then(|point| {
-            let waiting = &self.shared.waiting_set_points;
-            if waiting.fetch_add(1, Relaxed) < WAITING_SET_POINTS
-                && self.tasks.try_send(Task::SetPoint(point)).is_ok()
-            {
-                return Ok(());
-            }
-            waiting.fetch_sub(1, Relaxed);
-            let message = format!("{key}: {WAITING_SET_POINTS} set-points wait already");
-            Err(Refusal::new(Code::Busy, message))
+            let given = self.tasks.point(point, self.shared.saturates());
+            given.map_err(|why| match why {
+                NoRoom::Ended => ended(),
+                NoRoom::Full => {
+                    let what = "set-points that will hardly be taken";
+                    let message = format!("{key}: {WAITING_ODD_POINTS} {what} wait already");
+                    Refusal::new(Code::Busy, message)
+                }
+            })
         });
-        if let Err(refusal) = handed_on {
-            self.shared.refused_set_points.fetch_add(1, Relaxed);
-            let variable = key.split_once("/in/").map_or("", |(_, variable)| variable);
-            let note = Note::Refused(SetPoint::refused(variable, &bytes), refusal);
-            if self.notes.try_send(note).is_err() {
-                self.shared.unlogged_calls.fetch_add(1, Relaxed);
+        match handed_on {
+            Ok(None) => {}
+            Ok(Some(older)) => {
+                let told = SetPoint::told(&older.variable, older.body.as_bytes());
+                self.keep(Note::Superseded(told));
             }
+            Err(refusal) => {
+                self.shared.refused_set_points.fetch_add(1, Relaxed);
+                let variable = key.split_once("/in/").map_or("", |(_, variable)| variable);
+                self.keep(Note::Refused(SetPoint::told(variable, &bytes), refusal));
+            }
+        }
+    }
+
+    /// For the log; counted if too many wait for it.
+    fn keep(&self, note: Note) {
+        if self.notes.try_send(note).is_err() {
+            self.shared.unlogged_calls.fetch_add(1, Relaxed);
         }
     }
 

@@ -29,14 +29,15 @@ use super::queue::queue;
 use super::reach::Reach;
 use super::status::Shared;
 use super::stepping::Stepper;
-use super::tasks::{Task, WAITING_TASKS};
+use super::tasks::{Taker, tasks};
+use super::values::Settable;
 use super::watch::{Lost, Watch};
 use crate::component::Component;
 use crate::wire::{Both, Observer};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::sync_channel;
 use std::thread::JoinHandle;
 use zenoh::{Session, Wait as _};
 
@@ -103,7 +104,7 @@ pub struct Server {
     protocol: Protocol,
     publisher: Publisher,
     shared: Arc<Shared>,
-    tasks: Receiver<Task>,
+    tasks: Taker,
     watch: Watch,
     entrances: Entrances,
     threads: Vec<JoinHandle<()>>,
@@ -124,7 +125,7 @@ impl Server {
         let (session, reach) = session::open(options, Some(&keys))?;
         let (batches, publications) = queue();
         let (jobs, replies) = sync_channel(WAITING_REPLIES);
-        let (task_queue, tasks) = sync_channel(WAITING_TASKS);
+        let (task_queue, tasks) = tasks(Settable::of(component.variables()));
         let (note_queue, notes) = sync_channel(WAITING_NOTES);
         let protocol = Protocol::new(keys.base(), options.realtime_factor);
         let mut protocol = protocol.with_notes(Notes(notes));

@@ -3,6 +3,8 @@
 use super::*;
 use crate::bus::notes::{Note, Notes};
 use crate::bus::refusal::Code;
+use crate::bus::tasks::tasks;
+use crate::bus::values::Settable;
 use crate::bus::verb::Verb;
 use crate::component::{Causality, StepReport, ValueKind, ValueReference};
 use crate::wire::Unobserved;
@@ -76,13 +78,12 @@ fn what_still_waits_at_the_end_is_answered_and_told() {
         silo(Protocol::new("sandgate/v1/silo", None).with_notes(Notes(notes)));
     let shared = Shared::new(protocol.status(&component));
     shared.unlogged_calls.store(3, Relaxed);
-    let (give, tasks) = sync_channel(WAITING_TASKS);
+    let (give, tasks) = tasks(Settable::of(component.variables()));
     let answers = Arc::default();
     let step = call(Verb::Step, r#"{"req":"1","client":"late"}"#, &answers);
-    give.try_send(step).ok().unwrap();
+    give.call(step).ok().unwrap();
     let point = SetPoint::parse("gate.main.opening", br#"{"value":1,"client":"plc"}"#);
-    let point = Task::SetPoint(point.unwrap());
-    give.try_send(point).ok().unwrap();
+    assert_eq!(give.point(point.unwrap(), false), Ok(None));
     tell_status(&give_note);
     let stepper = Stepper {
         component,
@@ -104,9 +105,19 @@ fn what_still_waits_at_the_end_is_answered_and_told() {
             "set-point refused: state: the server ended",
             "rpc status of watcher ",
             "status answered ok",
-            "3 calls that were answered are not in this log: too many came at once",
+            "3 calls and set-points are not in this log: too many came at once",
         ]
     );
+}
+
+#[test]
+fn what_gave_way_to_a_newer_one_is_told_without_a_line_for_people() {
+    let (give, notes) = sync_channel(1);
+    let told = SetPoint::told("gate.main.opening", br#"{"value":1,"client":"plc"}"#);
+    give.try_send(Note::Superseded(told)).ok().unwrap();
+    let mut heard = Heard::default();
+    Notes(notes).tell(0.0, &mut heard);
+    assert_eq!(heard.0, ["in gate.main.opening of plc superseded"]);
 }
 
 fn tell_status(notes: &SyncSender<Note>) {
@@ -143,8 +154,7 @@ fn what_is_answered_while_a_step_runs_is_told_before_its_end() {
 fn set_points_are_told_as_they_are_taken_or_refused() {
     let (component, protocol) = silo(Protocol::new("sandgate/v1/silo", None));
     let shared = Shared::new(protocol.status(&component));
-    shared.waiting_set_points.store(2, Relaxed);
-    let (_give, tasks) = sync_channel(1);
+    let (_give, tasks) = tasks(Settable::of(component.variables()));
     let mut stepper = Stepper {
         component,
         protocol,
@@ -177,7 +187,7 @@ fn set_points_that_keep_coming_are_no_orchestrator() {
     let body = |variable: &str| SetPoint::parse(variable, b"0.5").unwrap();
     let point = body(&input.unwrap().name);
     let shared = Shared::new(protocol.status(&component));
-    let (give, tasks) = sync_channel(WAITING_TASKS);
+    let (give, tasks) = tasks(Settable::of(component.variables()));
     let mut watch = Watch::new(Some(Lost {
         after: Duration::from_millis(200),
         then: WhenLost::Terminate,
@@ -188,12 +198,11 @@ fn set_points_that_keep_coming_are_no_orchestrator() {
         scope.spawn(|| {
             // Far more often than the stepping thread looks up.
             for _ in 0..2000 {
-                let sent = give.try_send(Task::SetPoint(point.clone()));
+                let sent = give.point(point.clone(), false);
                 let lost = shared.orchestrator_lost.load(Relaxed);
                 if lost || sent.is_err() {
                     break;
                 }
-                shared.waiting_set_points.fetch_add(1, Relaxed);
                 std::thread::sleep(Duration::from_millis(5));
             }
             stop.store(true, Relaxed);
