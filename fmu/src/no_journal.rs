@@ -70,7 +70,7 @@ impl Journal {
         None
     }
 
-    pub(crate) fn before_step(&mut self, _: &mut Component) -> Result<(), Fault> {
+    pub(crate) fn before_step(&mut self, _: &mut Component, _: (f64, f64)) -> Result<(), Fault> {
         Ok(())
     }
 

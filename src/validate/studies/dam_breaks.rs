@@ -89,6 +89,11 @@ fn end(wet: bool, until: f64) -> f64 {
     }
 }
 
+/// Top of the domain [m]: at 200 particles over the depth a drop from a bore flew past twice the depth.
+fn top(until: f64) -> f64 {
+    if until > TIMES[0] { 0.6 } else { 1.2 }
+}
+
 /// What is changed at the coarser spacing.
 const CHANGED: [Choice; 2] = [Choice::Seed, Choice::SoundSpeed];
 
@@ -104,7 +109,7 @@ fn scene(rows: u32, wet: bool, until: f64) -> Result<Template, String> {
     let mut template = Template::new(TEMPLATE)?
         .with("numerics.spacing", dp)
         .with("domain.lower", point(-reservoir - 0.1, -0.1))
-        .with("domain.upper", point(end + 0.1, 0.6))
+        .with("domain.upper", point(end + 0.1, top(until)))
         .with(
             "bodies.reservoir.box",
             rectangle([-reservoir, 0.0], [0.0, DEPTH]),
