@@ -41,7 +41,7 @@ def clouds():
         for _, _, message, cloud in reader.iter_decoded_messages(topics=["sandgate/v1/small_silo/out/particles"]):
             names = [field.name for field in cloud.fields]
             points = np.frombuffer(cloud.data, "<f4").reshape(-1, len(names))
-            yield message.log_time * 1e-9, dict(zip(names, points.T))
+            yield message.log_time / 1e9, dict(zip(names, points.T))
 
 
 def vtp(path):
