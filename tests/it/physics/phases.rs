@@ -506,67 +506,6 @@ fn run(scene: &Scene, time: f64) -> (State<2>, State<2>) {
     (start, solve(scene, time).1)
 }
 
-/// Rings of silt under water, and the same four times as large: one tank in two units. The effective pressure evened a ring against its
-/// neighbours by its volume, in m^3.
-#[test]
-fn rings_of_silt_of_all_sizes_are_alike() {
-    let effective = |size: f64| {
-        let at = |x: f64| x * size;
-        let text = format!(
-            r#"
-name = "well"
-dimension = "axisymmetric"
-[domain]
-lower = [{r}, -{r}]
-upper = [{R}, {R}]
-[numerics]
-spacing = {dp}
-strain_relaxation_time = {relax}
-[materials.water]
-law = "fluid"
-density = 1000
-consistency = 0
-[materials.silt]
-law = "constant_friction"
-friction_angle = "30 deg"
-density = 1900
-pore_fluid = "water"
-[bodies.silt]
-material = "silt"
-box = {{ lower = [{r}, 0], upper = [{R}, {r}] }}
-[bodies.water]
-material = "water"
-box = {{ lower = [{r}, {r}], upper = [{R}, {top}] }}
-[walls.tank]
-polyline = [[{r}, {R}], [{r}, 0], [{R}, 0], [{R}, {R}]]
-slip = "free_slip"
-[gauges.grains]
-kind = "pressure"
-quantity = "effective"
-at = [{middle}, {low}]
-[run]
-step = {step}
-until = {until}
-"#,
-            r = at(0.125),
-            R = at(0.375),
-            dp = at(1.0 / 64.0),
-            top = at(0.1875),
-            middle = at(0.25),
-            low = at(0.03125),
-            relax = 0.03125 * size.sqrt(),
-            step = 0.03125 * size.sqrt(),
-            until = 0.25 * size.sqrt(),
-        );
-        let mut unit = Unit::new(&sandgate::scene::parse("well", &text).unwrap());
-        unit.run_to(0.25 * size.sqrt());
-        unit.get("gauge.grains.pressure") / size
-    };
-    let (small, large) = (effective(1.0), effective(4.0));
-    println!("effective pressure {small} and {large} Pa");
-    assert!((large / small - 1.0).abs() < 1e-9, "{small} {large}");
-}
-
 /// A fluid that is sheared in a duct without a free surface keeps its pressure within three times what it starts with: what density
 /// missed of the way of each step raised it to seven times that. What is left (docs/theory.md, "Limits") comes in at walls.
 #[test]
