@@ -32,13 +32,15 @@ impl<const D: usize> Plate<D> {
         if self.across.is_some() {
             for side in [0, 1] {
                 let beside = self.fill_side(side, &stands, &mut filled);
-                let next = [0, self.count[0] - 1];
-                for end in [0, 1]
-                    .into_iter()
-                    .filter(|&end| beside.contains(&next[end]))
-                {
-                    if met[end].contains(&[0, self.count[2] - 1][side]) {
-                        self.fill_eighth(end, side, &mut filled);
+                // The eighths behind an end and this side.
+                let behind: Vec<f64> = (0..ROWS)
+                    .map(|out| self.aside(side, out as f64 + 0.5))
+                    .collect();
+                for end in [0, 1] {
+                    let row = [0, self.count[0] - 1][end];
+                    let line = [0, self.count[2] - 1][side];
+                    if beside.contains(&row) && met[end].contains(&line) {
+                        self.fill_beyond(end, &behind, self.group, &mut filled);
                     }
                 }
             }
@@ -47,7 +49,7 @@ impl<const D: usize> Plate<D> {
         self.points.extend(filled);
     }
 
-    /// Fills beyond an end; the lines of points across at which there was something to fill.
+    /// Fills beyond an end, and tells the lines of points across at which there was something to fill.
     fn fill_end(
         &self,
         end: usize,
@@ -55,27 +57,18 @@ impl<const D: usize> Plate<D> {
         stands: &impl Fn(&Vector<D>) -> bool,
         filled: &mut Vec<Point<D>>,
     ) -> Vec<usize> {
-        let [_, deep, wide] = self.count;
         let touches = |m: &usize| {
             let place =
                 |steps, before| self.before(self.beyond(end, steps), *m as f64 + 0.5, before);
             meets != Meets::Nothing || touches_at_edge(place, stands)
         };
-        let met: Vec<usize> = (0..wide).filter(touches).collect();
+        let met: Vec<usize> = (0..self.count[2]).filter(touches).collect();
         let group = match meets {
             Meets::Face(group) => group,
             Meets::Corner | Meets::Nothing => self.group,
         };
-        for k in 0..deep {
-            for &m in &met {
-                filled.extend((0..ROWS).map(|row| Point {
-                    along: self.beyond(end, row as f64 + 0.5),
-                    offset: self.offset(k, m as f64 + 0.5),
-                    group,
-                    stays: end == 1,
-                }));
-            }
-        }
+        let across: Vec<f64> = met.iter().map(|&m| m as f64 + 0.5).collect();
+        self.fill_beyond(end, &across, group, filled);
         met
     }
 
@@ -106,15 +99,17 @@ impl<const D: usize> Plate<D> {
         met
     }
 
-    /// Fills the eighth behind an end and a side.
-    fn fill_eighth(&self, end: usize, side: usize, filled: &mut Vec<Point<D>>) {
-        for (k, out) in (0..self.count[1]).flat_map(|k| (0..ROWS).map(move |out| (k, out))) {
-            filled.extend((0..ROWS).map(|row| Point {
-                along: self.beyond(end, row as f64 + 0.5),
-                offset: self.offset(k, self.aside(side, out as f64 + 0.5)),
-                group: self.group,
-                stays: end == 1,
-            }));
+    /// Rows beyond an end, at places so many steps across.
+    fn fill_beyond(&self, end: usize, across: &[f64], group: u16, filled: &mut Vec<Point<D>>) {
+        for k in 0..self.count[1] {
+            for &steps in across {
+                filled.extend((0..ROWS).map(|row| Point {
+                    along: self.beyond(end, row as f64 + 0.5),
+                    offset: self.offset(k, steps),
+                    group,
+                    stays: end == 1,
+                }));
+            }
         }
     }
 
