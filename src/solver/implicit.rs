@@ -14,6 +14,22 @@ use super::{Solver, SolverError};
 /// solve leaves: with 1 the heap of the study `rest` had ten times the kinetic energy.
 const RESTING: f64 = 0.3;
 
+/// Tolerance against what stress and friction do in a step, over that against the speeds [1]. What a solve leaves is of one sign in what
+/// slides steadily: against its speed alone, 3e-4 of 4 m/s was as much as its friction in a step.
+const PUSHED: f64 = 30.0;
+
+/// What a solve may leave [kg m/s].
+struct Limit {
+    /// Of what |M (v* - u)| is more than that of a step's fall; u is the walls' mean velocity where walls are touched, else the mean of v*.
+    of_speed: f64,
+    /// Of |M (v_g - v*)|, v_g the first guess.
+    of_push: f64,
+    /// Of the residual at the start [1].
+    of_residual: f64,
+    /// Of a step's fall, and of rounding.
+    floor: f64,
+}
+
 /// Share of the tolerance below which a solve needs no iteration at all [1]. Above it takes one, even where the first guess is
 /// within the tolerance: what a solve leaves, the next one starts with, so that in steady flow it would add up step by step.
 const SETTLED: f64 = 1e-3;
@@ -111,13 +127,13 @@ impl<const D: usize> Solver<D> {
         self.jacobi_blocks(state, dt, &mut work.jacobi);
         self.grip_blocks(dt, &mut work.jacobi);
         self.find_explicit(state, dt, work);
-        let limit = self.solver_limit(state, dt);
+        let limit = self.solver_limit(state, dt, &work.velocity);
         self.cut_slip(state);
         match self.numerics.yield_form {
             YieldForm::Capped => {
                 self.expect_friction(state, work);
                 self.hold_friction(state, &mut work.held);
-                let spent = self.conjugate_gradients(state, dt, limit, work)?;
+                let spent = self.conjugate_gradients(state, dt, &limit, work)?;
                 self.project_friction(state, work);
                 Ok(spent)
             }
@@ -135,7 +151,7 @@ impl<const D: usize> Solver<D> {
                         self.expect_friction(state, work);
                     }
                     self.hold_friction(state, &mut work.held);
-                    spent += self.conjugate_gradients(state, dt, limit, work)?;
+                    spent += self.conjugate_gradients(state, dt, &limit, work)?;
                     self.project(state, work);
                     self.project_friction(state, work);
                     done += 1;
@@ -150,11 +166,12 @@ impl<const D: usize> Solver<D> {
         &self,
         state: &State<D>,
         dt: f64,
-        limit: f64,
+        limit: &Limit,
         work: &mut Viscous<D>,
     ) -> Result<u32, SolverError> {
         let (workers, mass) = (&self.workers, &state.grains.mass);
         let mut norm2 = self.first_residual(state, dt, work);
+        let limit = limit.of(norm2.sqrt());
         if norm2.is_finite() {
             norm2 = self.settle_explicit(norm2, limit, work);
         }
@@ -272,9 +289,8 @@ impl<const D: usize> Solver<D> {
         norm2
     }
 
-    /// tolerance x what |M (v* - u)| is more than that of one step's fall, and [`RESTING`] of that; u is the walls' mean velocity
-    /// where walls are touched, else the mean of v*: the same in every inertial frame (docs/theory.md, E12).
-    fn solver_limit(&self, state: &State<D>, dt: f64) -> f64 {
+    /// What a step's solves may leave, from v* and the first guess of the velocity: the same in every inertial frame (docs/theory.md, E12).
+    fn solver_limit(&self, state: &State<D>, dt: f64, guess: &[Vector<D>]) -> Limit {
         let mass = &state.grains.mass;
         let touched = self.lists.blocks.iter().any(|b| !b.wall_rows.is_empty());
         let mut frame = if touched {
@@ -290,17 +306,32 @@ impl<const D: usize> Solver<D> {
             frame[0] = 0.0;
         }
         let fall = dt * self.gravity_norm;
-        let [moved, masses, total] = self.workers.sums(mass.len(), |i| {
+        let [moved, masses, total, pushed] = self.workers.sums(mass.len(), |i| {
             let d = sub(&self.prediction[i].velocity, &frame);
+            let p = sub(&self.prediction[i].velocity, &guess[i]);
             let m2 = mass[i] * mass[i];
-            [m2 * dot(&d, &d), m2, mass[i]]
+            [m2 * dot(&d, &d), m2, mass[i], m2 * dot(&p, &p)]
         });
         let fallen = fall * masses.sqrt();
         // A fall grows with the step by itself. What solves leave adds up, and here are fewer to a second.
         let steps = f64::from(self.acoustic.count());
-        let scale = steps * (moved.sqrt() - fallen).max(0.0) + RESTING * fallen;
+        let tolerance = self.numerics.solver_tolerance;
         // The floor is the rounding of velocities that are all the same.
-        self.numerics.solver_tolerance * scale + 1e-15 * self.numerics.sound_speed * total
+        let floor = tolerance * RESTING * fallen + 1e-15 * self.numerics.sound_speed * total;
+        Limit {
+            of_speed: tolerance * steps * (moved.sqrt() - fallen).max(0.0),
+            of_push: tolerance * PUSHED * pushed.sqrt(),
+            of_residual: tolerance * PUSHED,
+            floor,
+        }
+    }
+}
+
+impl Limit {
+    /// Of a solve that starts from a residual of this size [kg m/s].
+    fn of(&self, residual: f64) -> f64 {
+        let of_push = self.of_push + self.of_residual * residual;
+        self.floor + self.of_speed.min(of_push)
     }
 }
 
