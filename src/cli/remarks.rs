@@ -1,49 +1,13 @@
 //! What is legal in a scene and seldom meant, in words for people: `sandgate info` and `sandgate run` tell it.
 
-use crate::material::Material;
-use crate::scene::{Dimension, Scene};
-use crate::solver::Scheme;
+use crate::scene::Scene;
 
 /// Share of a body's mass that its particles may miss or add without a word [1].
 const MASS_TOLERANCE: f64 = 0.01;
 
-/// Share of what it is made up to from which a fluid's own viscosity is worth a word [1], ...
-const FELT: f64 = 0.05;
-/// ... if it is made up by more than this share [1].
-const OVER: f64 = 0.2;
-
 /// Remarks on a scene, none for most.
 pub(super) fn remarks(scene: &Scene) -> Vec<String> {
-    let all = gates(scene).into_iter().chain(bodies(scene));
-    all.chain(viscosities(scene)).collect()
-}
-
-/// Viscosity that a Newton's fluid is computed with [Pa s], if that is more than its own.
-pub(super) fn raised_viscosity(scene: &Scene, material: &Material) -> Option<f64> {
-    let n = &scene.numerics;
-    let dimensions = match scene.dimension {
-        Dimension::Three => 3.0,
-        Dimension::Two | Dimension::Axisymmetric => 2.0,
-    };
-    let h = n.smoothing_ratio * n.spacing;
-    let computed = material.computed_viscosity(dimensions, h, n.sound_speed);
-    (n.scheme == Scheme::Implicit && computed > material.viscous.consistency).then_some(computed)
-}
-
-/// Fluids whose own viscosity would tell, and is made up to more; water's would not, at any spacing that is used.
-fn viscosities(scene: &Scene) -> Vec<String> {
-    let told = scene.materials.iter().filter_map(|named| {
-        let own = named.material.viscous.consistency;
-        let raised = raised_viscosity(scene, &named.material)?;
-        (FELT * raised < own && own * (1.0 + OVER) < raised).then(|| {
-            format!(
-                "note: material {}: its viscosity, {own} Pa s, is made up to {raised:.3} Pa s at this spacing by artificial_viscosity,\n  \
-                 {}, and flows are slower for it. With artificial_viscosity = 0 it is what it says; a finer spacing adds less.",
-                named.name, named.material.artificial_viscosity,
-            )
-        })
-    });
-    told.collect()
+    gates(scene).into_iter().chain(bodies(scene)).collect()
 }
 
 /// Bodies whose particles weigh more or less than their shape.
@@ -161,24 +125,6 @@ mod tests {
         ] {
             let told = remarks(&with_body(dimension, body));
             assert_eq!(told, Vec::<String>::new(), "{body}");
-        }
-    }
-
-    #[test]
-    fn a_viscosity_that_is_made_up_to_more_is_told() {
-        let with = |own: f64| {
-            let mut scene = with_body("2", "box = { lower = [0, 0], upper = [0.1, 0.1] }");
-            scene.materials[0].material.viscous.consistency = own;
-            remarks(&scene)
-        };
-        // 0.02 x 1000 kg/m^3 x 16 mm x 9.9 m/s / 8.
-        let told = with(0.1);
-        assert!(
-            told[0].contains("0.1 Pa s, is made up to 0.396 Pa s"),
-            "{told:?}"
-        );
-        for own in [0.001, 0.35, 2.0] {
-            assert_eq!(with(own), Vec::<String>::new());
         }
     }
 

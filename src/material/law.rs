@@ -24,6 +24,8 @@ pub enum Law {
     ConstantFriction(ConstantFriction),
     /// mu(I) without a yield stress, well-posed at low I.
     BarkerGray(BarkerGray),
+    /// None: stress does not depend on pressure, and what has strength hangs together. Grains without friction are not this.
+    Fluid,
 }
 
 /// Calls a method of whichever law it is: a branch per particle, no pointer.
@@ -33,6 +35,10 @@ macro_rules! of_law {
             Law::MuI($law) => $call,
             Law::ConstantFriction($law) => $call,
             Law::BarkerGray($law) => $call,
+            Law::Fluid => {
+                let $law = ConstantFriction { mu: 0.0 };
+                $call
+            }
         }
     };
 }

@@ -53,7 +53,8 @@ pub struct Material {
     pub cohesion: f64,
     /// Viscous stress beside them. With a flow index that is not 1 the law is one without rate dependence of its own.
     pub viscous: Viscous,
-    /// Artificial viscosity alpha that a Newtonian fluid's viscosity is made up to, between its own particles [1].
+    /// Artificial viscosity alpha that a Newtonian fluid's viscosity is made up to where it is compressed or hardly moves, between its own
+    /// particles [1].
     pub artificial_viscosity: f64,
     /// Artificial sound speed of its equation of state [m/s]; `None` is that of the scene. [B] eq. 3: c_k.
     pub sound_speed: Option<f64>,
@@ -113,7 +114,7 @@ impl Material {
                 phi_min: FLUID_PACKING.0,
                 pore_density: 0.0,
             },
-            law: Law::ConstantFriction(ConstantFriction { mu: 0.0 }),
+            law: Law::Fluid,
             cohesion: yield_stress,
             viscous,
             artificial_viscosity: 0.0,
@@ -123,11 +124,11 @@ impl Material {
         }
     }
 
-    /// Whether stress does not depend on pressure.
+    /// Whether it is a fluid by its law, which is not what grains are that happen to have no friction.
     #[inline]
     #[must_use]
     pub fn is_fluid(&self) -> bool {
-        matches!(self.law, Law::ConstantFriction(ConstantFriction { mu }) if mu == 0.0)
+        matches!(self.law, Law::Fluid)
     }
 
     /// Whether shear stress is proportional to the shear rate: Newton's fluid.
@@ -137,7 +138,7 @@ impl Material {
         self.flows() && self.viscous.is_linear()
     }
 
-    /// Viscosity that a Newton's fluid is computed with by scheme implicit [Pa s]: its own, or what its artificial viscosity is worth
+    /// Largest viscosity that a Newton's fluid has in scheme implicit [Pa s]: its own, or what its artificial viscosity is worth
     /// where that is more, alpha rho h c0/(2 (D + 2)), at a smoothing length h [m] and the scene's sound speed [m/s].
     #[must_use]
     pub fn computed_viscosity(&self, dimensions: f64, h: f64, sound_speed: f64) -> f64 {

@@ -1,10 +1,11 @@
 //! What a scene holds and what it leaves out, for people.
 
-use crate::cli::remarks::{raised_viscosity, remarks};
+use crate::cli::remarks::remarks;
 use crate::component::{Component, StaysAwake};
 use crate::material::{Law, Material, MuI};
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
 use crate::shape::Shape;
+use crate::solver::Scheme;
 
 /// Particles, walls, devices, gauges and what is not used.
 pub(super) fn describe(scene: &Scene, component: &Component) -> String {
@@ -112,7 +113,7 @@ fn material(scene: &Scene, material: &Material) -> String {
             mu_i(law.high()),
             law.joint()
         ),
-        Law::ConstantFriction(_) if material.is_fluid() => {
+        Law::Fluid => {
             format!("fluid, {:.6} kg/m^3", material.rest_density())
         }
         Law::ConstantFriction(law) => format!(
@@ -134,7 +135,7 @@ fn material(scene: &Scene, material: &Material) -> String {
         text.push_str(&format!("; viscosity {} Pa s", viscous.consistency));
         if let Some(raised) = raised_viscosity(scene, material) {
             text.push_str(&format!(
-                ", computed with {raised:.3} (artificial_viscosity)"
+                ", {raised:.3} where it is compressed or hardly moves (artificial_viscosity)"
             ));
         }
     } else if viscous.consistency > 0.0 {
@@ -157,6 +158,18 @@ fn material(scene: &Scene, material: &Material) -> String {
         text.push_str(&format!("; bulk friction {}", material.bulk_friction));
     }
     text
+}
+
+/// What a Newton's fluid's viscosity is made up to where it is compressed or hardly moves [Pa s], if that is more than its own.
+fn raised_viscosity(scene: &Scene, material: &Material) -> Option<f64> {
+    let n = &scene.numerics;
+    let dimensions = match scene.dimension {
+        Dimension::Three => 3.0,
+        Dimension::Two | Dimension::Axisymmetric => 2.0,
+    };
+    let h = n.smoothing_ratio * n.spacing;
+    let computed = material.computed_viscosity(dimensions, h, n.sound_speed);
+    (n.scheme == Scheme::Implicit && computed > material.viscous.consistency).then_some(computed)
 }
 
 /// Walls, devices and gauges, a line each.

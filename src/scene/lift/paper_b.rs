@@ -53,7 +53,7 @@ impl Lift<'_> {
                     "a material with bulk_friction",
                 ),
                 (
-                    !matches!(material.law, Law::ConstantFriction(_)),
+                    !matches!(material.law, Law::ConstantFriction(_) | Law::Fluid),
                     "a material whose friction depends on the inertial number",
                 ),
             ];

@@ -134,7 +134,7 @@ table! {
         optional flow_index: Ratio, in Range::within(0.1, 3.0);
         /// Yield stress (0 if left out): below it nothing shears, and with it the fluid hangs together: it bears tension of up to (1 + pi) times its shear stress.
         optional yield_stress: Pressure, in Range::from(0.0);
-        /// Artificial viscosity alpha, what the viscosity of Newton's fluids is made up to: damps what water leaves undamped, and adds nothing to a fluid whose viscosity is at least alpha density h c/(2 (D + 2)). Fluids that yield or thin have none.
+        /// Artificial viscosity alpha, what the viscosity of Newton's fluids is made up to where they are compressed or hardly move: damps what water leaves undamped, adds little to what is sheared alone, and nothing to a fluid whose viscosity is at least alpha density h c/(2 (D + 2)). Fluids that yield or thin have none.
         optional artificial_viscosity: Ratio, in Range::within(0.0, 1.0), default 0.02;
         /// Artificial sound speed of this fluid, not above that of the scene; left out: that of the scene.
         optional sound_speed: Speed, in Range::above(0.0);

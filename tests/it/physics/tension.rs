@@ -1,5 +1,6 @@
 //! Tension that fluids with a yield stress bear, and others do not.
 
+use super::Unit;
 use sandgate::scene;
 use sandgate::solver::{Solver, SolverError, StepInputs};
 
@@ -107,4 +108,50 @@ until = 0.02
     let (solver, _) = super::solve(&scene::parse("beside", text).unwrap(), 0.02);
     let least = solver.pressure().iter().copied().fold(0.0, f64::min);
     assert!(least < 0.0, "nothing is pulled");
+}
+
+/// Undrained clay is grains without friction and no fluid: its halves part, and it rubs on a wall by mu_w.
+#[test]
+fn clay_without_friction_parts_and_rubs_as_grains_do() {
+    let scene = |bodies: &str, slip: &str, until: f64| {
+        let text = format!(
+            r#"
+name = "undrained"
+[domain]
+lower = [-0.2, -0.1]
+upper = [0.6, 0.4]
+[numerics]
+spacing = "5 mm"
+expected_speed = 2
+[materials.clay]
+law = "constant_friction"
+friction_angle = "0 deg"
+density = 1800
+cohesion = "2 kPa"
+{bodies}
+[walls.floor]
+polyline = [[-0.1, 0], [0.5, 0]]
+{slip}
+[gauges.above]
+kind = "mass"
+lower = [-0.2, 0.1]
+upper = [0.6, 0.4]
+[run]
+step = "10 ms"
+until = "0.3 s"
+"#
+        );
+        let mut unit = Unit::new(&scene::parse("undrained", &text).unwrap());
+        unit.run_to(until);
+        unit
+    };
+    let halves = "[bodies.low]\nmaterial = \"clay\"\nbox = { lower = [0, 0], upper = [0.1, 0.05] }\n\
+        [bodies.high]\nmaterial = \"clay\"\nbox = { lower = [0, 0.05], upper = [0.1, 0.1] }\nvelocity = [0, 1]";
+    let above = scene(halves, "", 0.1).get("gauge.above.mass");
+    assert!(above > 7.0, "{above} kg of 9 are up");
+    let block = "[bodies.a]\nmaterial = \"clay\"\nbox = { lower = [0, 0], upper = [0.1, 0.05] }\nvelocity = [0.5, 0]";
+    let unit = scene(block, "slip = \"friction\"\nwall_friction = 0.5", 0.15);
+    // v/(mu_w g) is 0.10 s.
+    let left = unit.get("energy.kinetic") / (0.5 * 9.0 * 0.25);
+    assert!(left < 1e-3, "{left} of its energy is left");
 }
