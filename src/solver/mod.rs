@@ -160,6 +160,8 @@ pub struct Solver<const D: usize> {
     packing: Packing,
     /// 1 for fluids without yield stress, else 0; empty in scenes without.
     flows: Vec<f64>,
+    /// Share of the viscosity made up to each particle's own that it feels (E21) [1]; empty where none is made up.
+    damped: Vec<f64>,
     /// Part of each particle's momentum that walls are given; empty in scenes without fluids.
     lean: Vec<Tensor<D>>,
     /// For each material whether (F3) is for it; where it is for none, this and what follows stay empty.

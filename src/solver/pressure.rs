@@ -12,6 +12,12 @@ use crate::state::State;
 use super::Solver;
 use super::pair::WallRow;
 
+/// Weight of |div v| against the shear rate in the share of the made-up viscosity that a particle feels [1]: a plane wave has both.
+const DAMPED: f64 = 4.0;
+
+/// Shear rate over sqrt(g/H) below which noise is all there is, and is damped [1].
+const SLOW: f64 = 0.1;
+
 /// What the sweep leaves per particle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prediction<const D: usize> {
@@ -41,6 +47,7 @@ impl<const D: usize> Solver<D> {
         self.note_loads(state);
         self.prediction.resize(n, Prediction::default());
         self.note_what_flows(state);
+        self.note_damped();
         self.find_uneven_pressure();
         let mut prediction = std::mem::take(&mut self.prediction);
         let loads = std::mem::take(&mut self.loads);
@@ -131,6 +138,24 @@ impl<const D: usize> Solver<D> {
             ]);
         });
         self.loads = loads;
+    }
+
+    /// Notes how much of the viscosity made up to their own particles feel: what is sheared alone needs none (E21).
+    fn note_damped(&mut self) {
+        if !self
+            .materials
+            .iter()
+            .any(|m| self.missing_viscosity(m) > 0.0)
+        {
+            return;
+        }
+        let slow = SLOW * self.gravity_norm / self.numerics.fall_speed.max(f64::MIN_POSITIVE);
+        let kinematics = &self.kinematics;
+        self.damped.resize(kinematics.len(), 0.0);
+        self.workers.each(&mut self.damped, |i, share| {
+            let squeezed = DAMPED * kinematics[i].divergence.abs() + slow;
+            *share = squeezed / (squeezed + kinematics[i].shear).max(f64::MIN_POSITIVE);
+        });
     }
 
     /// Notes what has no yield stress: it cannot rest with another pressure than the hydrostatic one, so diffusion needs no

@@ -123,7 +123,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// alpha less what the material's own viscosity is worth: nu = alpha h c/(2 (D + 2)).
-    fn missing_viscosity(&self, m: &Material) -> f64 {
+    pub(super) fn missing_viscosity(&self, m: &Material) -> f64 {
         if m.artificial_viscosity == 0.0 || !m.is_newtonian() {
             return 0.0;
         }
@@ -242,7 +242,9 @@ impl<'s, L: Lanes, const D: usize, const PLAIN: bool> PressureRow<'s, L, D, PLAI
             // That of its own kind.
             let same =
                 |m: usize| f64::from(u8::from(grains.phase[j[m] as usize] == grains.phase[i]));
-            alpha += self.splat(self.own_damping) * Four::gather(self.lanes, same);
+            let damped = &self.solver.damped;
+            let share = |m: usize| same(m) * 0.5 * (damped[i] + damped[j[m] as usize]);
+            alpha += self.splat(self.own_damping) * Four::gather(self.lanes, share);
         }
         let damping = alpha * self.mean_rho(near) * along * self.to_f() * near.c;
         for k in 0..D {

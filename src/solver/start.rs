@@ -106,6 +106,7 @@ impl<const D: usize> Solver<D> {
             lattice_sum,
             packing: Packing::new(&kernel, spacing),
             flows: Vec::new(),
+            damped: Vec::new(),
             lean: Vec::new(),
             wall_share: Vec::new(),
             lone: Vec::new(),
