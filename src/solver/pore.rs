@@ -9,6 +9,7 @@
 //!
 //! Symbols: k_ij = 2 V_i V_j |F|; sum_j k_ij (p_i - p_j - rho_w g.x_ij) = 0, x_ij = x_i - x_j; Dirichlet rows: p_j of fluids.
 
+mod air;
 mod effective;
 mod solve;
 
@@ -158,6 +159,7 @@ impl<const D: usize> Solver<D> {
             };
         });
         let near = &*near;
+        let air = self.find_air(state);
         let mut rows = vec![Row::default(); diagonal.len()];
         self.workers
             .blocks_read(&self.lists.blocks, &mut rows, |block, first, out| {
@@ -165,7 +167,9 @@ impl<const D: usize> Solver<D> {
                     self.arch,
                     |lanes| for (row, o) in out.iter_mut().enumerate() {
                         if self.is_porous(state, first + row) {
-                            *o = self.seepage_row(lanes, state, near, block, row, first + row);
+                            let i = first + row;
+                            let dry = || air.reaches(&state.grains.position[i]);
+                            *o = self.seepage_row(lanes, state, near, (block, row, i), dry);
                         }
                     }
                 );
@@ -186,16 +190,15 @@ impl<const D: usize> Solver<D> {
         limit2.max(1e-24 * given2)
     }
 
-    /// Sums of row i.
+    /// Sums of row i; `dry`: whether air reaches it.
     #[inline(always)]
     fn seepage_row<L: Lanes>(
         &self,
         lanes: L,
         state: &State<D>,
         near: &[Quad],
-        block: &Block<D>,
-        row: usize,
-        i: usize,
+        (block, row, i): (&Block<D>, usize, usize),
+        dry: impl Fn() -> bool,
     ) -> Row {
         let rho_w = self.materials[state.grains.phase[i] as usize]
             .grains
@@ -216,7 +219,7 @@ impl<const D: usize> Solver<D> {
             given: volume * (fluid.sum() - 2.0 * rho_w * fall.sum()),
             known: volume * known.sum(),
         };
-        if sums.diagonal > 0.0 && sums.diagonal < SURFACE * volume * self.lattice_sum {
+        if sums.diagonal > 0.0 && sums.diagonal < SURFACE * volume * self.lattice_sum && dry() {
             self.join_air(state, rho_w, &mut sums, (block, row, i));
         }
         sums
