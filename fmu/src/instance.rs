@@ -13,7 +13,7 @@ use sandgate::scene::{self, Scene};
 use crate::access::Values;
 use crate::asked::Asked;
 use crate::fault::{Fault, Status};
-use crate::guard::{Handle, Text, embedded_scene, inside, shield};
+use crate::guard::{Handle, Text, embedded_scene, inside, shield, spare_callers_thread};
 use crate::journal::Journal;
 use crate::log::{Category, Log, text};
 use crate::updates::Updates;
@@ -117,6 +117,7 @@ impl Instance {
     /// Builds a component. Library users want one thread unless they ask for more: importers run instances beside
     /// each other, and results do not depend on it.
     pub(crate) fn new(scene: &Scene, log: Log) -> Result<Self, Fault> {
+        spare_callers_thread();
         let mut component = Component::new(scene)?;
         component.set_threads(1);
         Ok(Self {

@@ -8,6 +8,7 @@
 
 mod geometry;
 mod lanes;
+mod launch;
 mod workers;
 
 pub use geometry::Geometry;
@@ -15,6 +16,9 @@ pub use geometry::Geometry;
 pub use lanes::Inlined;
 pub(crate) use lanes::in_lanes;
 pub use lanes::{Arch, Four, LANES, Lanes, Portable, Quad};
+#[cfg(feature = "record")]
+pub(crate) use launch::launch;
+pub use launch::{Launcher, start_threads_by};
 pub use workers::{CHUNK, Workers};
 
 /// A vector of D components.

@@ -1,5 +1,6 @@
 //! Threads of one component: a pool of its own, or none at all for one thread (so that nothing outlives it).
 
+use super::launch::launch;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::thread::JoinHandle;
@@ -34,6 +35,10 @@ struct Pool {
 impl Pool {
     /// `None` if the machine cannot start so many threads.
     fn new(count: usize) -> Option<Self> {
+        launch(|| Self::start(count))?
+    }
+
+    fn start(count: usize) -> Option<Self> {
         let mut threads = Vec::new();
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(count)

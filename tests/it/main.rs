@@ -25,6 +25,8 @@ mod fmu;
 #[cfg(all(feature = "record", feature = "cli"))]
 mod full_disk;
 mod gauges;
+#[cfg(feature = "record")]
+mod host_process;
 mod json_schema;
 mod licenses;
 #[cfg(all(feature = "record", feature = "cli"))]

@@ -271,7 +271,7 @@ fn spell(kind: &str) -> String {
 }
 
 /// Arguments that link with the library and find it when the program runs.
-fn link() -> Vec<String> {
+pub(crate) fn link() -> Vec<String> {
     let folder = library().parent().expect("a file is in a folder").display();
     vec![
         format!("-L{folder}"),
@@ -330,7 +330,7 @@ fn the_cost_of_the_interface_can_be_measured() {
 }
 
 /// Compiles a C99 program against the header, clean of warnings; gives the program.
-fn compiled(source: &str, folder: &Path, options: &[&str]) -> PathBuf {
+pub(crate) fn compiled(source: &str, folder: &Path, options: &[&str]) -> PathBuf {
     let program = folder.join("program");
     run(
         &format!("compiling {source}"),
@@ -347,7 +347,7 @@ fn compiled(source: &str, folder: &Path, options: &[&str]) -> PathBuf {
     program
 }
 
-fn silo() -> PathBuf {
+pub(crate) fn silo() -> PathBuf {
     root().join("tests/scenes/small_silo.toml")
 }
 

@@ -4,14 +4,15 @@
 //! comes from a C caller, whose side of the contract is written in the headers (a pointer is NULL or points to as many
 //! elements as said, for the time of the call). So using one is safe Rust, and the other files of this package need
 //! no `unsafe` but the attribute that exports a name. `handle` keeps instances, `state` saved states, `callback` the
-//! importer's functions, `arithmetic` how the thread computes on either side, `records` the structures of the C interface,
-//! `embedded` reads the scene inside the library.
+//! importer's functions, `arithmetic` how the thread computes on either side, `launch` starts threads, `records` the structures
+//! of the C interface, `embedded` reads the scene inside the library.
 
 mod arithmetic;
 mod border;
 mod callback;
 mod embedded;
 mod handle;
+mod launch;
 mod records;
 mod state;
 
@@ -24,6 +25,7 @@ pub(crate) use embedded::embedded_scene;
 #[cfg(test)]
 pub(crate) use embedded::packed;
 pub(crate) use handle::{Door, Handle, Need, shield};
+pub(crate) use launch::spare_callers_thread;
 pub(crate) use records::{CLedger, CStepReport, CVariable};
 pub(crate) use state::{SavedState, StateHandle, StateSlot};
 

@@ -1,6 +1,7 @@
 //! What is known of a file that is being written, shared by the calls and the thread that brings bytes to the system.
 
 use super::{Counts, Mcap};
+use crate::math::launch;
 use crate::record::error::Failure;
 use crate::record::sink::{Passed, Syncer};
 use mcap::records::MessageHeader;
@@ -218,8 +219,6 @@ pub(super) fn spawn_flusher(shared: Arc<Shared>, path: Option<PathBuf>) -> Optio
             }
         }
     };
-    std::thread::Builder::new()
-        .name("sandgate-log".to_owned())
-        .spawn(flush_until_stopped)
-        .ok()
+    let thread = std::thread::Builder::new().name("sandgate-log".to_owned());
+    launch(|| thread.spawn(flush_until_stopped).ok())?
 }
