@@ -180,6 +180,7 @@ impl<const D: usize> Engine for Simulation<D> {
     }
 
     fn begin(&mut self, start: f64, inputs: &Inputs) {
+        self.solver.renew_threads();
         self.sampler.begin_step();
         self.slept_at = self.state.rest.asleep.then_some(self.state.steps);
         for impulse in &mut self.state.impulse {
@@ -230,6 +231,7 @@ impl<const D: usize> Engine for Simulation<D> {
     fn restore(&mut self, bytes: &[u8]) -> Result<(), String> {
         let saved = Saved::decode(bytes, &self.state, &self.solver, &self.sampler)?;
         // As many as there are sections, as was just checked.
+        self.solver.renew_threads();
         self.sampler.set_crossed(&saved.crossed);
         self.state = saved.state;
         self.still = OnceLock::new();

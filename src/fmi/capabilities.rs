@@ -118,6 +118,8 @@ const RULES: &[(&str, &[&str])] = &[
         &["test_the_depth_is_held_with_and_without_roll_back"]),
     ("an ensemble over parameters and inputs has the bits of a serial run on any number of workers, also when one is killed", &["test_a_killed_worker_changes_no_bit_and_costs_a_slice"]),
     ("the C interface leaves memory alone and nothing behind, under valgrind and the address sanitizer", &["a_client_in_c_leaves_its_memory_alone_and_nothing_behind"]),
+    ("a library that used threads and a log is gone from memory when it is unloaded; a process that was forked goes on with threads of its own and the same bits",
+        &["a_library_that_used_threads_and_a_log_can_be_unloaded", "a_forked_process_has_threads_of_its_own_and_the_same_bits"]),
 ];
 
 /// Attributes of `CoSimulation` behind the model identifier.

@@ -30,6 +30,8 @@ pub struct Workers {
 struct Pool {
     pool: Option<rayon::ThreadPool>,
     threads: Vec<JoinHandle<()>>,
+    /// The process that has the threads: one that was forked from it has none of them.
+    process: u32,
 }
 
 impl Pool {
@@ -48,8 +50,17 @@ impl Pool {
             })
             .build()
             .ok();
-        let pool = Self { pool, threads };
+        let pool = Self {
+            pool,
+            threads,
+            process: std::process::id(),
+        };
         pool.pool.is_some().then_some(pool)
+    }
+
+    /// Whether this process was forked from the one that has the threads.
+    fn is_lost(&self) -> bool {
+        self.process != std::process::id()
     }
 
     /// Runs `f` in the pool: sweeps inside it share its threads, never the process-wide pool.
@@ -63,6 +74,12 @@ impl Pool {
 
 impl Drop for Pool {
     fn drop(&mut self) {
+        if self.is_lost() {
+            // There is nobody to ask and nobody to wait for; what is said about them here is true of another process.
+            std::mem::forget(self.pool.take());
+            self.threads.drain(..).for_each(std::mem::forget);
+            return;
+        }
         // Dropping rayon's pool only asks its threads to end.
         drop(self.pool.take());
         for thread in self.threads.drain(..) {
@@ -84,6 +101,13 @@ impl Workers {
         // A machine that cannot start threads still gets the same results from the calling thread.
         let pool = Pool::new(count);
         Self { pool }
+    }
+
+    /// As many in this process, if these stayed in another one, from which it was forked.
+    #[must_use]
+    pub fn renewed(&self) -> Option<Self> {
+        let lost = self.pool.as_ref().filter(|pool| pool.is_lost())?;
+        Some(Self::new(lost.threads.len()))
     }
 
     /// Number of threads at work.

@@ -217,11 +217,18 @@ impl LogFile {
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.shared.lock()
+        let mut state = self.shared.lock();
+        state.leave_to_parent(self.path.as_ref());
+        state
     }
 
     fn stop_flusher(&mut self) {
         if let Some(flusher) = self.flusher.take() {
+            if self.lock().is_forked() {
+                // It stayed in the other process: nobody to wait for.
+                std::mem::forget(flusher);
+                return;
+            }
             self.shared.stop();
             // The thread does not panic; if it did, its failure is latched in the state already.
             let _ = flusher.join();

@@ -137,6 +137,13 @@ impl<const D: usize> Solver<D> {
         self.workers = Arc::new(Workers::new(threads));
     }
 
+    /// As many threads as there were, if this process has none of them because it was forked.
+    pub fn renew_threads(&mut self) {
+        if let Some(workers) = self.workers.renewed() {
+            self.workers = Arc::new(workers);
+        }
+    }
+
     /// Sorts a fresh state's particles and derives everything else from it.
     pub fn start(&mut self, state: &mut State<D>) {
         self.renew_lists(state);

@@ -1,10 +1,21 @@
-//! What a process may do with the shared library inside: unload it.
+//! What a process may do with the shared library inside: unload it, fork.
 #![cfg(target_os = "linux")]
 
+use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use crate::python::run;
-use crate::shared_library::{compiled, library, scratch, silo};
+use crate::shared_library::{compiled, library, link, scratch, silo};
+
+fn program(name: &str) -> PathBuf {
+    let link = link();
+    let link: Vec<&str> = link.iter().map(String::as_str).collect();
+    compiled(
+        &format!("tests/c/{name}.c"),
+        &scratch(&format!("host_{name}")),
+        &link,
+    )
+}
 
 fn silent(output: &Output) {
     let said = String::from_utf8_lossy(&output.stderr);
@@ -23,4 +34,20 @@ fn a_library_that_used_threads_and_a_log_can_be_unloaded() {
         "it says what went wrong",
     );
     silent(&output);
+}
+
+#[test]
+fn a_forked_process_has_threads_of_its_own_and_the_same_bits() {
+    let log = scratch("host_fork_log").join("run.mcap");
+    let output = run(
+        "tests/c/fork.c",
+        Command::new(program("fork")).arg(silo()).arg(&log),
+        "it says what went wrong; signal 14 is a child that waits for threads that it has not",
+    );
+    silent(&output);
+    let ending = sandgate::record::check_mass(&log).unwrap().ending;
+    assert!(
+        matches!(ending, sandgate::record::Ending::Complete),
+        "the parent's log is whole: {ending:?}"
+    );
 }

@@ -58,6 +58,8 @@ pub(super) struct State {
     sync: Option<Syncer>,
     dirty_since: Option<Instant>,
     time: f64,
+    /// The process that writes: one that was forked from it has the file, too.
+    process: u32,
     stopped: bool,
 }
 
@@ -80,6 +82,7 @@ impl State {
             sync,
             dirty_since: None,
             time: 0.0,
+            process: std::process::id(),
             stopped: false,
         };
         match begun {
@@ -143,6 +146,24 @@ impl State {
         }
         self.unflushed = 0;
         self.dirty_since = None;
+    }
+
+    /// Writes nothing more in a process that was forked from the one that writes.
+    pub(super) fn leave_to_parent(&mut self, path: Option<&PathBuf>) {
+        if !self.is_forked() || self.mcap.is_none() {
+            return;
+        }
+        // Not dropped, which would write what is in memory, here too.
+        std::mem::forget(self.mcap.take());
+        let error = std::io::Error::other(
+            "this process was forked from the one that writes the log; reset the instance, or make one here",
+        );
+        self.fail(&error.into(), path);
+    }
+
+    /// Whether this process was forked from the one that writes, and has no thread that brings bytes to the system.
+    pub(super) fn is_forked(&self) -> bool {
+        self.process != std::process::id()
     }
 
     /// Writes the summary, brings everything to the disk and closes the file.
