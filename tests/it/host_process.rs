@@ -1,10 +1,11 @@
-//! What a process may do with the shared library inside: unload it, fork.
+//! What a process may do with the shared library inside: unload it, fork, run out of memory.
 #![cfg(target_os = "linux")]
 
+use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-use crate::python::run;
+use crate::python::{root, run};
 use crate::shared_library::{compiled, library, link, scratch, silo};
 
 fn program(name: &str) -> PathBuf {
@@ -49,5 +50,34 @@ fn a_forked_process_has_threads_of_its_own_and_the_same_bits() {
     assert!(
         matches!(ending, sandgate::record::Ending::Complete),
         "the parent's log is whole: {ending:?}"
+    );
+}
+
+#[test]
+fn walls_that_do_not_fit_into_memory_are_refused_before_they_are_made() {
+    let folder = scratch("host_large");
+    // A small heap on a floor of 1.7 million points.
+    let case = fs::read_to_string(root().join("cases/column_collapse_3d.toml")).unwrap();
+    let text = [
+        ("spacing = \"4 mm\"", "spacing = \"0.5 mm\""),
+        ("radius = \"50 mm\"", "radius = \"4 mm\""),
+        ("height = \"45 mm\"", "height = \"4 mm\""),
+    ]
+    .iter()
+    .fold(case, |text, (was, is)| {
+        assert!(text.contains(was), "{was}");
+        text.replace(was, is)
+    });
+    let scene = folder.join("large.toml");
+    fs::write(&scene, text).unwrap();
+    let output = run(
+        "tests/c/memory.c",
+        Command::new(program("memory")).arg(scene).arg("300"),
+        "a signal is memory that was not to be had in the middle of building",
+    );
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        said.contains("points of walls take about") && said.contains("coarser spacing"),
+        "{said}"
     );
 }

@@ -3,6 +3,7 @@
 mod inflows;
 mod joins;
 mod masses;
+mod memory;
 mod overlap;
 mod particles;
 mod places;
@@ -19,6 +20,7 @@ use super::ghosts::ghost_depth;
 use super::{Dimension, Point, Scene};
 use inflows::source;
 use joins::{Standing, join_boxes};
+use memory::check_memory;
 use overlap::check_overlap;
 use particles::{spins, state};
 use plates::{plates, with_plates};
@@ -37,9 +39,11 @@ pub fn narrow<const D: usize>(point: &Point) -> Vector<D> {
 /// Solver plan and start state of a scene whose dimension is D.
 ///
 /// # Errors
-/// A sentence: no particles and no inflow, a particle inside a wall, a periodic side too short for the kernel.
+/// A sentence: no particles and no inflow, more of them or of walls than there is memory for, a particle inside a wall, a periodic
+/// side too short for the kernel.
 pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), String> {
     let periodic = periodic::<D>(scene)?;
+    check_memory::<D>(scene)?;
     let mut walls = match scene.numerics.scheme {
         Scheme::PaperB(_) => elements::<D>(scene),
         Scheme::Implicit | Scheme::PaperA(_) => walls::<D>(scene, &periodic),

@@ -34,20 +34,16 @@ fn exact_mass(mass: f64, largest: f64) -> f64 {
     (mass / quantum).round() * quantum
 }
 
-/// Memory that a particle takes with its neighbour lists, sums and solves, in the plane and in space [B]: as measured, 5.2 and 12.3 kB.
-const BYTES: [usize; 2] = [5_000, 12_000];
-
 /// Particles, and devices as they start; `walls` are the points of walls and gates that may be roofs of fluids.
 ///
 /// # Errors
-/// A sentence: no particles and no inflow, more particles than there is memory for.
+/// A sentence: no particles and no inflow.
 pub(super) fn state<const D: usize>(
     scene: &Scene,
     walls: &[Vector<D>],
 ) -> Result<State<D>, String> {
     let mut random = Random::new(scene.numerics.seed);
     let lattices = lattices::<D>(scene);
-    check_memory::<D>(lattices.iter().map(|l| l.points.len()).sum())?;
     let grains = grains(scene, walls, &lattices, &mut random);
     if grains.is_empty() && scene.inflows.is_empty() {
         return Err("the scene has no particles and no inflow: add a body that holds at least one particle spacing".to_owned());
@@ -78,22 +74,6 @@ pub(super) fn state<const D: usize>(
         trend: 0.0,
         rest: RestState::default(),
         random,
-    })
-}
-
-/// Asks for the memory that so many particles take, and gives it back: where it is not to be had a process ends in the middle of a step.
-fn check_memory<const D: usize>(particles: usize) -> Result<(), String> {
-    let bytes = particles.saturating_mul(BYTES[usize::from(D == 3)]);
-    let mut room: Vec<u8> = Vec::new();
-    let had = room.try_reserve_exact(bytes);
-    // Or the compiler leaves out what nobody reads.
-    std::hint::black_box(&room);
-    had.map_err(|_| {
-        format!(
-            "{particles} particles take about {:.1} GB of memory, and so much is not to be had: use a coarser spacing (a smaller \
-             solver.resolution_scale) or smaller bodies",
-            bytes as f64 / 1e9
-        )
     })
 }
 
