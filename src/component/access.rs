@@ -12,9 +12,10 @@ const RANGE_SLACK: f64 = 1e-9;
 impl Component {
     /// Sets variables, all or none. `values` holds the flat values of all references, one after the other.
     ///
-    /// An input is held from here on; a slope that was given before is dropped. An input that is out of range by a
-    /// billionth of the range, which rounding may do, is clamped; by more, also by a slope, only if `saturate_inputs` is set, and then
-    /// [`Component::take_notes`] tells. Fixed parameters take effect together, at [`Component::settle`].
+    /// An input is held from here on, or has the slope over the next step that it was given since the last one, before this
+    /// call or after it. One that is out of range by a billionth of the range, which rounding may do, is clamped; by more,
+    /// also by a slope, only if `saturate_inputs` is set, and then [`Component::take_notes`] tells. Fixed
+    /// parameters take effect together, at [`Component::settle`].
     ///
     /// # Errors
     /// Unknown reference, wrong length, not finite, out of range, not settable (in this mode): names the variable,
@@ -40,10 +41,8 @@ impl Component {
                 }
                 Some(source) => {
                     if let Some(ramp) = self.input_mut(*source) {
-                        *ramp = Ramp {
-                            value: *value,
-                            slope: 0.0,
-                        };
+                        // Its slope, if it has one, was given since the last step.
+                        ramp.value = *value;
                     }
                 }
                 None => self.set_for_host(*reference, *value),

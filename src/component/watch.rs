@@ -105,6 +105,9 @@ impl Intermediate<'_> {
                 return Err(bad("set", &row.name, "a parameter", allowed));
             }
         }
-        self.component.set(references, values)
+        self.component.set(references, values)?;
+        // It counted from the start of the step.
+        let none = vec![0.0; references.len()];
+        self.component.set_input_derivatives(references, &none)
     }
 }

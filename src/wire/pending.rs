@@ -207,7 +207,7 @@ mod tests {
         let (value, slope) = (of(first, false).unwrap(), of(first, true).unwrap());
         assert_eq!((value.1, slope.1), (0.9999, 0.5));
         assert_eq!(of(second, false).unwrap().1, 0.25);
-        // A value that is set takes the slope's place, so that their order counts.
+        // In the order in which they were set.
         assert!(slope.0 < value.0);
         assert!(pending.is_empty());
     }

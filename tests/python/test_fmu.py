@@ -247,10 +247,12 @@ def test_fmi_2_ramps_an_input_within_a_step():
     assert fmu.get(["gate.sluice.opening"]) == [0.125]
     h, t = 0.003, H
     for k in range(5):
-        # Slopes that end at 1 but for rounding are no mistake, others are.
-        fmu.set("gate.sluice.opening", 0.1 + 0.17 * k)
+        # Slopes that end at 1 but for rounding are no mistake, others are. Value and slope come in any order.
+        calls = [lambda: fmu.set("gate.sluice.opening", 0.1 + 0.17 * k),
+                 lambda: fmu.fmu.fmi2SetRealInputDerivatives(fmu.fmu.component, vr, 1, order, slope)]
         slope[0] = (1.0 - (0.1 + 0.17 * k)) / h
-        fmu.fmu.fmi2SetRealInputDerivatives(fmu.fmu.component, vr, 1, order, slope)
+        for call in calls if k % 2 else reversed(calls):
+            call()
         fmu.step(t, h)
         t += h
         assert fmu.get(["gate.sluice.opening"])[0] == pytest.approx(1.0, abs=1e-15)

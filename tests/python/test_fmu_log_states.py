@@ -211,13 +211,13 @@ def test_tables_have_the_values_to_which_inputs_ramped(tmp_path):
     fmu.set_state(state)
     fmu.free_state(state)
     step(0.0)
-    # Beyond its range, where it is clamped; from which a value that is set drops the slope.
+    # Beyond its range, where it is clamped; and with a value that is set after the slope.
     step(5.0 / H)
-    ramp(fmu, GATE, -0.1 / H)
+    ramp(fmu, GATE, -0.125 / H)
     fmu.set(GATE, 0.25)
     step(0.0)
     fmu.free()
-    assert held[1] == held[0] and held[3:] == [1.0, 0.25]
+    assert held[1] == held[0] and held[3:] == [1.0, 0.125]
     rows = exported(path)
     assert [bits(float(row[GATE])) for row in rows[1:]] == [bits(value) for value in held]
     runs_again(path)

@@ -145,19 +145,16 @@ impl<'a> Builder<'a> {
     }
 
     fn inputs(&mut self, applied: &Applied) {
-        let moments = applied.moments.iter().flat_map(|moment| &moment.inputs);
-        for input in applied.inputs.iter().chain(moments) {
-            let places = self.places.get(&input.name).map_or(&[][..], Vec::as_slice);
+        for input in &applied.inputs {
             if input.slope {
-                for (&place, &slope) in places.iter().zip(&input.values) {
-                    self.now.slopes[place] = slope;
-                }
-                continue;
+                self.slope(&input.name, &input.values);
+            } else {
+                self.put(&input.name, &input.values);
             }
-            // A value that is set is held.
-            places
-                .iter()
-                .for_each(|&place| self.now.slopes[place] = 0.0);
+        }
+        for input in applied.moments.iter().flat_map(|moment| &moment.inputs) {
+            // Set inside a step, it is held to its end.
+            self.slope(&input.name, &vec![0.0; input.values.len()]);
             self.put(&input.name, &input.values);
         }
         match applied.event() {
@@ -208,6 +205,13 @@ impl<'a> Builder<'a> {
         self.put(&gauge.name, &gauge.values);
         if let Some((device, _)) = gauge.name.rsplit_once('.') {
             self.put(&format!("{device}.validity"), &[f64::from(gauge.validity)]);
+        }
+    }
+
+    fn slope(&mut self, name: &str, slopes: &[f64]) {
+        let places = self.places.get(name).map_or(&[][..], Vec::as_slice);
+        for (&place, &slope) in places.iter().zip(slopes) {
+            self.now.slopes[place] = slope;
         }
     }
 
