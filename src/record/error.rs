@@ -49,8 +49,10 @@ pub enum RecordError {
 /// The first write that failed. After it nothing more is written, so that the file is a whole log up to a cut.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
-    /// Simulated time of the last message given to the log [s].
+    /// Simulated time of the last message given to the log [s]: when it was noticed.
     pub time: f64,
+    /// Simulated time of the last message that is known to be written, if any is [s].
+    pub written: Option<f64>,
     /// What the system said.
     pub cause: String,
     /// The file that holds what was written before, if there is one.
@@ -59,11 +61,18 @@ pub struct Failure {
 
 impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "log stopped at simulated time {} s: {}",
-            self.time, self.cause
-        )?;
+        match self.written {
+            Some(written) => write!(
+                f,
+                "log stopped at simulated time {written} s, noticed at {} s: {}",
+                self.time, self.cause
+            ),
+            None => write!(
+                f,
+                "log stopped at simulated time {} s, before which nothing is known to be written: {}",
+                self.time, self.cause
+            ),
+        }?;
         if let Some(file) = &self.file {
             write!(
                 f,

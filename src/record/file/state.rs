@@ -57,7 +57,10 @@ pub(super) struct State {
     passed: Passed,
     sync: Option<Syncer>,
     dirty_since: Option<Instant>,
+    /// Simulated time of the last message [s].
     time: f64,
+    /// That of the last one known to be written, if any is [s].
+    written_to: Option<f64>,
     /// The process that writes: one that was forked from it has the file, too.
     process: u32,
     stopped: bool,
@@ -82,6 +85,7 @@ impl State {
             sync,
             dirty_since: None,
             time: 0.0,
+            written_to: None,
             process: std::process::id(),
             stopped: false,
         };
@@ -115,7 +119,7 @@ impl State {
         header: &MessageHeader,
         data: &[u8],
     ) {
-        self.time = time;
+        let earlier = std::mem::replace(&mut self.time, time);
         if self.mcap.is_none() {
             self.dropped += 1;
             return;
@@ -130,6 +134,7 @@ impl State {
         // first of the next one.
         if written.is_some() && self.passed.load(Relaxed) != before {
             self.unflushed = 1;
+            self.written_to = (self.written > 1).then_some(earlier);
         }
     }
 
@@ -146,6 +151,7 @@ impl State {
         }
         self.unflushed = 0;
         self.dirty_since = None;
+        self.written_to = (self.written > 0).then_some(self.time);
     }
 
     /// Writes nothing more in a process that was forked from the one that writes.
@@ -198,6 +204,7 @@ impl State {
         };
         self.failure.get_or_insert(Failure {
             time: self.time,
+            written: self.written_to,
             cause,
             file: path.cloned(),
         });

@@ -57,6 +57,39 @@ fn what_a_full_disk_left_out_is_counted_to_the_chunk() {
     );
 }
 
+/// The clock notices a full disk late: what is told is how far the file reaches, and when that was noticed.
+#[test]
+fn a_failure_names_the_time_to_which_the_file_reaches() {
+    let lines: Vec<_> = (0..40).map(line).collect();
+    let begun = whole(&lines[..20], 10).len();
+    let disk = Disk::with_room(begun);
+    let mut file = write(disk.clone(), &lines, usize::MAX);
+    let (counts, failure) = file.finish();
+    assert_eq!(counts.written, 0);
+    let told = failure.unwrap().to_string();
+    assert!(
+        told.starts_with(
+            "log stopped at simulated time 0.39 s, before which nothing is known to be written"
+        ),
+        "{told}"
+    );
+
+    let disk = Disk::with_room(PLENTY);
+    let mut file = write(disk.clone(), &lines[..20], 10);
+    *disk.room.lock().unwrap() = 0;
+    let channel = add::<StepStats>(&mut file, "sandgate/v1/tests/out/more", BTreeMap::new());
+    for line in &lines[20..] {
+        file.message(line.time, channel.id, 0, (0, 0), &line.encode_to_vec());
+    }
+    let (counts, failure) = file.finish();
+    assert_eq!((counts.written, counts.dropped), (20, 20));
+    let told = failure.unwrap().to_string();
+    assert!(
+        told.starts_with("log stopped at simulated time 0.19 s, noticed at 0.39 s: "),
+        "{told}"
+    );
+}
+
 #[test]
 fn a_device_without_room_is_reported() {
     let full = std::fs::File::options()

@@ -95,6 +95,7 @@ impl Recorder {
         }
         self.earlier.failure.get_or_insert_with(|| Failure {
             time: self.last.time,
+            written: Some(self.last.time),
             cause: error.to_string(),
             file: None,
         });
