@@ -186,6 +186,7 @@ impl<const D: usize> Engine for Simulation<D> {
         for impulse in &mut self.state.impulse {
             *impulse = [0.0; D];
         }
+        self.state.forget_blocked();
         self.state.time = start;
         let mut ramps = inputs.gate_opening.iter().chain(&inputs.inflow_rate);
         if ramps.any(|r| r.slope != 0.0) {

@@ -65,7 +65,8 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Moves plates towards the openings wanted; a plate that would run into material stops and says so.
+    /// Moves plates towards the openings wanted; a plate that would run into material stops and says so, until
+    /// [`State::forget_blocked`].
     pub(super) fn move_gates(&mut self, state: &mut State<D>, wanted: &[f64], dt: f64) {
         for g in 0..self.plates.len() {
             let plate = &self.plates[g];
@@ -83,7 +84,8 @@ impl<const D: usize> Solver<D> {
                 (gate.opening + change).clamp(0.0, 1.0)
             };
             let gate = &mut state.gates[g];
-            (gate.opening, gate.rate, gate.blocked) = (opening, rate, blocked);
+            (gate.opening, gate.rate) = (opening, rate);
+            gate.blocked |= blocked;
             self.plates[g].place(&mut self.walls, opening, rate);
         }
     }
@@ -133,7 +135,6 @@ impl<const D: usize> Solver<D> {
             let inflow = &mut state.inflows[n];
             if rates[n] <= 0.0 {
                 // Closed: a row that was due and had no room stays out.
-                inflow.blocked = false;
                 if inflow.pending >= row {
                     inflow.pending = 0.0;
                 }
@@ -150,7 +151,7 @@ impl<const D: usize> Solver<D> {
                     .iter()
                     .any(|slot| norm(&self.periodic.difference(x, slot)) < room)
             });
-            inflow.blocked = taken;
+            inflow.blocked |= taken;
             if taken {
                 // What cannot enter is refused, not saved up for a burst.
                 inflow.pending = row;

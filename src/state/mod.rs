@@ -67,6 +67,15 @@ pub struct RestState<const D: usize> {
     pub force: Vec<Vector<D>>,
 }
 
+impl<const D: usize> State<D> {
+    /// From here on `blocked` of gates and inflows tells what happens: a communication step begins.
+    pub fn forget_blocked(&mut self) {
+        self.gates.iter_mut().for_each(|gate| gate.blocked = false);
+        let inflows = self.inflows.iter_mut();
+        inflows.for_each(|inflow| inflow.blocked = false);
+    }
+}
+
 /// How long walls that move as a whole have moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PoseTimes {
@@ -83,7 +92,7 @@ pub struct GateState {
     pub opening: f64,
     /// Rate of opening over the last step [1/s].
     pub rate: f64,
-    /// Whether material stopped it in the last step.
+    /// Whether material stopped it since [`State::forget_blocked`].
     pub blocked: bool,
     /// Opening when the neighbour lists were built.
     pub listed_opening: f64,
@@ -96,6 +105,6 @@ pub struct InflowState {
     pub pending: f64,
     /// Mass let in since the start [kg].
     pub admitted: f64,
-    /// Whether material stood in the way of the last row.
+    /// Whether material stood in the way of a row since [`State::forget_blocked`].
     pub blocked: bool,
 }

@@ -309,3 +309,46 @@ fn a_refused_initialisation_leaves_no_trace() {
     silo.initialize(1.0, Some(2.0)).unwrap();
     assert_eq!(silo.time(), 1.0);
 }
+
+/// A gate that grains hold for a part of a communication step says so, though it moved when the step ended; a state that was saved then
+/// says it too, and a refused step forgets nothing.
+#[test]
+fn what_blocks_a_gate_is_told_for_the_whole_step() {
+    let mut silo = stepping("tests/scenes/small_silo.toml");
+    set(&mut silo, "gate.main.opening", 1.0);
+    while silo.time() < 0.3 - 1e-9 {
+        silo.do_step(silo.time(), 0.02).unwrap();
+    }
+    set(&mut silo, "gate.main.opening", 0.0);
+    let (mut held, mut free) = (0, 0);
+    for _ in 0..10 {
+        let before = value(&silo, "gate.main.actual_opening");
+        silo.do_step(silo.time(), 0.02).unwrap();
+        let moved = before - value(&silo, "gate.main.actual_opening");
+        // 0.5 m/s of 32 mm.
+        let could = f64::min(before, 0.5 * 0.02 / 0.032);
+        let blocked = value(&silo, "gate.main.blocked");
+        let late = moved < (1.0 - 1e-9) * could;
+        // A gate that was held and arrived all the same may say so.
+        let arrived = moved == before;
+        assert!(
+            if late {
+                blocked == 1.0
+            } else {
+                arrived || blocked == 0.0
+            },
+            "{moved} {could}"
+        );
+        if blocked == 1.0 {
+            held += 1;
+            assert!(silo.do_step(-1.0, 0.02).is_err());
+            assert_eq!(value(&silo, "gate.main.blocked"), 1.0);
+            let mut again = stepping("tests/scenes/small_silo.toml");
+            again.restore(&silo.save().unwrap()).unwrap();
+            assert_eq!(value(&again, "gate.main.blocked"), 1.0);
+        } else {
+            free += 1;
+        }
+    }
+    assert!(held > 0 && free > 0, "{held} steps held, {free} free");
+}

@@ -246,7 +246,7 @@ fn inflow_rows(i: usize, inflow: &Inflow) -> impl Iterator<Item = Row> {
             "",
             Source::InflowBlocked(i),
             format!(
-                "whether material before inflow {name} kept it from letting in what was wanted"
+                "whether material before inflow {name} kept it from letting in what was wanted in the last step"
             ),
         )
         .kind(ValueKind::Boolean),
