@@ -16,6 +16,9 @@ const DRY: f64 = 0.05;
 /// Places on a line are this many spacings apart: finer than the kernel, so that no crossing is stepped over.
 const STEP: f64 = 0.25;
 
+/// Share of a depth by which rounding may make it less than what is asked for.
+const ROUNDING: f64 = 1e-9;
+
 /// A line along which depth is measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthLine<const D: usize> {
@@ -85,10 +88,18 @@ impl<const D: usize> DepthLine<D> {
         low
     }
 
-    /// Whether the depth is at least `least` [m], for less than what the depth itself costs.
+    /// Whether the depth is at least `least` [m], but for rounding; for less than what the depth itself costs, where places tell.
     pub(super) fn is_deep(&self, view: &View<D>, least: f64) -> bool {
-        self.filled(view, &mut Nearby::new(view))
-            .is_ok_and(|k| self.height(view, k) >= least)
+        let least = least * (1.0 - ROUNDING);
+        let mut near = Nearby::new(view);
+        let Ok(filled) = self.filled(view, &mut near) else {
+            return false;
+        };
+        // The surface is between this place and the next.
+        self.height(view, filled) >= least
+            || (filled < self.count(view)
+                && self.height(view, filled + 1) > least
+                && self.crossing(view, &near, filled) >= least)
     }
 
     /// Number of the highest place with S >= 0.5, or why there is none. `near` is then what it and the next place see.
@@ -313,8 +324,11 @@ mod tests {
                     .find(|&k| line.fill(view, &all, line.height(view, k)) >= 0.5);
                 let mut near = Nearby::new(view);
                 assert_eq!(line.highest_filled(view, &mut near), everywhere, "line {k}");
-                let deep = line.depth(view).is_ok_and(|depth| depth >= view.spacing);
-                assert_eq!(line.is_deep(view, view.spacing), deep, "line {k}");
+                for least in [1.0, 1.01, 1.1, 1.3, 5.63, 5.7] {
+                    let least = least * view.spacing;
+                    let deep = line.depth(view).is_ok_and(|depth| depth >= least);
+                    assert_eq!(line.is_deep(view, least), deep, "line {k}, {least} m");
+                }
             });
         }
     }

@@ -168,6 +168,46 @@ mod tests {
         );
     }
 
+    /// On a thin wedge a row is ten spacings long: the front is where the profile has that depth, whatever share of a spacing it is.
+    #[test]
+    fn the_front_is_where_the_depth_gauge_reads_that_depth() {
+        let wedge = Bed::<2>::new(1.6, 4, 0.0).keep(|x| x[1] < 0.04 * (1.0 - x[0] / 0.4));
+        for least in [1.0, 1.02, 1.1, 1.24, 1.26, 1.5, 2.1] {
+            let least_depth = least * wedge.spacing;
+            let front = Front {
+                origin: [0.0, 0.0],
+                direction: [1.0, 0.0],
+                up: [0.0, 1.0],
+                least_depth,
+            };
+            let place = wedge.look(|view| front.sample(view)).values[0];
+            let depth = |s: f64| {
+                let line = DepthLine {
+                    foot: [s, 0.0],
+                    up: [0.0, 1.0],
+                    length: 0.1,
+                };
+                wedge.look(|view| line.sample(view)).values[0]
+            };
+            // Bisection leaves half a spacing over 2^20.
+            let near = 1e-5 * wedge.spacing;
+            let (before, beyond) = (depth(place - near), depth(place + near));
+            assert!(
+                before >= least_depth * (1.0 - 1e-6) && beyond < least_depth * (1.0 + 1e-6),
+                "{least} spacings: {before} m before {place} m, {beyond} m beyond"
+            );
+            // Not only at its edge: nothing beyond is as deep.
+            // As far as the images across the periodic side, which are deep.
+            let places = (1..40).map(|k| place + 0.5 * f64::from(k) * wedge.spacing);
+            let beyond = places.filter(|s| *s < 0.36).map(depth);
+            let deepest = beyond.fold(0.0, f64::max);
+            assert!(
+                deepest < least_depth + 0.01 * wedge.spacing,
+                "{least} spacings: {deepest} m beyond"
+            );
+        }
+    }
+
     #[test]
     fn no_material_ahead_is_empty() {
         let block = Bed::<2>::new(1.6, 10, 0.0).keep(|x| x[0] < 0.25);
