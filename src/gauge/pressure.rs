@@ -24,7 +24,8 @@ impl<const D: usize> PressureProbe<D> {
         if view.is_outside(&self.at) {
             return Reading::none(1, Validity::Outside);
         }
-        if view.is_covered(&self.at) {
+        // Walls are hollow deep inside, and corners between walls that meet are behind neither.
+        if view.is_inside(&self.at) || view.is_covered(&self.at) {
             return Reading::none(1, Validity::Blocked);
         }
         match fit_at(view, &self.at) {
@@ -98,5 +99,7 @@ mod tests {
         assert_eq!(sample([0.2, 0.2]), Validity::Empty);
         assert_eq!(sample([0.2, -0.02]), Validity::Blocked);
         assert_eq!(sample([0.2, 9.0]), Validity::Outside);
+        // Beyond the rows of points that stand for the wall.
+        assert_eq!(sample([0.2, -0.0499]), Validity::Blocked);
     }
 }
