@@ -45,6 +45,7 @@ fn keys(raw: &RawNumerics) -> Vec<Key<'_>> {
             place(&raw.pair_viscosity_share),
         ),
         ("rotation", IMPLICIT, place(&raw.rotation)),
+        ("seepage_interval", IMPLICIT, place(&raw.seepage_interval)),
         ("solver_tolerance", IMPLICIT, place(&raw.solver_tolerance)),
         (
             "solver_max_iterations",
