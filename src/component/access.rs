@@ -14,7 +14,7 @@ impl Component {
     ///
     /// An input is held from here on, or has the slope over the next step that it was given since the last one, before this
     /// call or after it. One that is out of range by a billionth of the range, which rounding may do, is clamped; by more,
-    /// also by a slope, only if `saturate_inputs` is set, and then [`Component::take_notes`] tells. Fixed
+    /// also by a slope, only if `saturate_inputs` is set, by the same call too, and then [`Component::take_notes`] tells. Fixed
     /// parameters take effect together, at [`Component::settle`].
     ///
     /// # Errors
@@ -24,8 +24,9 @@ impl Component {
         self.check_length("set", references, values.len())?;
         let mut accepted = Vec::with_capacity(values.len());
         let mut notes = Vec::new();
+        let saturates = self.saturates_with(references, values);
         for (row, value) in self.settable("set", references)?.into_iter().zip(values) {
-            accepted.push(self.accept(row, *value, &mut notes)?);
+            accepted.push(accept(row, *value, saturates, &mut notes)?);
         }
         self.notes.append(&mut notes);
         for (reference, value) in references.iter().zip(&accepted) {
@@ -63,24 +64,13 @@ impl Component {
         self.life.saturate_inputs
     }
 
-    /// The value as it is taken: inputs a little out of range, or with `saturate_inputs` far, are clamped.
-    fn accept(&self, row: &Variable, value: f64, notes: &mut Vec<String>) -> Result<f64, Error> {
-        if row.causality == Causality::Input
-            && value.is_finite()
-            && let Some((least, most)) = row.range
-            && !(least..=most).contains(&value)
-        {
-            let clamped = value.clamp(least, most);
-            if (value - clamped).abs() <= RANGE_SLACK * (most - least) {
-                return Ok(clamped);
-            }
-            if self.life.saturate_inputs {
-                notes.push(saturated(&row.name, value, clamped));
-                return Ok(clamped);
-            }
-        }
-        check_value(row, value)?;
-        Ok(value)
+    /// Whether inputs are clamped by a call that sets these, wherever `saturate_inputs` stands among them; settable ones have one value
+    /// each.
+    fn saturates_with(&self, references: &[ValueReference], values: &[f64]) -> bool {
+        let mut set = references.iter().zip(values).rev();
+        let given =
+            set.find(|(r, _)| matches!(self.table.source(**r), Some(Source::SaturateInputs)));
+        given.map_or(self.life.saturate_inputs, |(_, value)| *value != 0.0)
     }
 
     /// Gives inputs a slope for the next step: value + slope (t - t0), t0 being the start of the step. After the
@@ -273,6 +263,31 @@ impl VariableTable {
         let allowed = format!("{wanted}, as many as these variables have");
         Err(bad(call, "number of values", &found.to_string(), &allowed))
     }
+}
+
+/// The value as it is taken: inputs a little out of range, or if they are saturated far, are clamped.
+fn accept(
+    row: &Variable,
+    value: f64,
+    saturates: bool,
+    notes: &mut Vec<String>,
+) -> Result<f64, Error> {
+    if row.causality == Causality::Input
+        && value.is_finite()
+        && let Some((least, most)) = row.range
+        && !(least..=most).contains(&value)
+    {
+        let clamped = value.clamp(least, most);
+        if (value - clamped).abs() <= RANGE_SLACK * (most - least) {
+            return Ok(clamped);
+        }
+        if saturates {
+            notes.push(saturated(&row.name, value, clamped));
+            return Ok(clamped);
+        }
+    }
+    check_value(row, value)?;
+    Ok(value)
 }
 
 /// What is told of an input that was clamped.

@@ -175,6 +175,26 @@ fn the_stop_time_stays_with_whom_it_was_told() {
     assert!(none.do_step(0.0, h).is_err());
 }
 
+/// The order of what one call sets is no one's meaning.
+#[test]
+fn inputs_are_saturated_by_the_call_that_asks_for_it() {
+    let mut component = stepping("tests/scenes/small_silo.toml");
+    let row = |name: &str| component.variables().by_name(name).unwrap().reference;
+    let (gate, saturate) = (row("gate.main.opening"), row("saturate_inputs"));
+    for references in [[saturate, gate], [gate, saturate]] {
+        let values = |on: f64| references.map(|r| if r == gate { 1.5 } else { on });
+        component.set(&references, &values(1.0)).unwrap();
+        assert_eq!(value(&component, "gate.main.opening"), 1.0);
+        assert_eq!(component.take_notes().len(), 1);
+        // The call that ends it is not saturated any more, and changes nothing.
+        component.set(&[gate], &[0.5]).unwrap();
+        assert!(component.set(&references, &values(0.0)).is_err());
+        assert!(component.saturates_inputs());
+        assert_eq!(value(&component, "gate.main.opening"), 0.5);
+        component.set(&[saturate], &[0.0]).unwrap();
+    }
+}
+
 /// A slope out of the range is clamped where an input would be, and told.
 #[test]
 fn slopes_are_saturated_as_inputs_are() {
