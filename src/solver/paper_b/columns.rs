@@ -4,6 +4,10 @@
 //! A column is two spacings wide across gravity's main axis. The surface of a saturated material there is half a spacing above
 //! its highest particle that is not alone among others; pores carry the weight of their own fluid from there. Dry material
 //! carries all of its pressure, fluids have no grains.
+//!
+//! Where several materials of grains lie in a column ([B] has one), what is above counts with its own weight w: buoyant if it is
+//! saturated, whole if it is dry. p_eff = g int w dz up to the surface, by trapezoids from grain to grain: a layer ends halfway
+//! between its last grain and the other's first. What hangs more than [`GAP`] above does not bear on what is below.
 
 use std::collections::BTreeMap;
 
@@ -14,8 +18,14 @@ use crate::state::State;
 use super::ALONE;
 use super::sums::Sums;
 
+/// Spacings between two grains of a column above which nothing lies between that carries [1].
+const GAP: f64 = 3.0;
+
 /// Place of a column across gravity, and its phase.
 type Column<const D: usize> = ([i64; D], u8);
+
+/// Grains of a column from the highest on: head [m^2/s^2], phase, p_eff [Pa].
+type Stack = Vec<(f64, u8, f64)>;
 
 impl<const D: usize> Solver<D> {
     /// p_eff of each particle [Pa].
@@ -31,6 +41,7 @@ impl<const D: usize> Solver<D> {
         } else {
             BTreeMap::new()
         };
+        let stacks = self.stacks(state, sums);
         out.clear();
         out.extend((0..grains.len()).map(|i| {
             let material = &self.materials[grains.phase[i] as usize];
@@ -41,6 +52,9 @@ impl<const D: usize> Solver<D> {
                 return self.pressure_of(state, i).max(0.0);
             }
             let x = &grains.position[i];
+            if let Some(stack) = stacks.get(&self.column(x)) {
+                return self.bearing(stack, self.head(x), grains.phase[i]);
+            }
             let top = tops.get(&(self.column(x), grains.phase[i]));
             let buoyant = material.rest_density() - material.grains.pore_density;
             // Height times g; what is alone has nothing above it.
@@ -64,6 +78,55 @@ impl<const D: usize> Solver<D> {
             }
         }
         tops
+    }
+
+    /// Columns with several materials of grains.
+    fn stacks(&self, state: &State<D>, sums: &[Sums<D>]) -> BTreeMap<[i64; D], Stack> {
+        let mut stacks: BTreeMap<[i64; D], Stack> = BTreeMap::new();
+        let of_grains = self.materials.iter().filter(|m| !m.is_fluid()).count();
+        if !self.has_pores || of_grains < 2 {
+            return stacks;
+        }
+        let grains = &state.grains;
+        for (i, x) in grains.position.iter().enumerate() {
+            let phase = grains.phase[i];
+            if !self.materials[phase as usize].is_fluid() && sums[i].lambda >= ALONE {
+                let stack = stacks.entry(self.column(x)).or_default();
+                stack.push((self.head(x), phase, 0.0));
+            }
+        }
+        stacks.retain(|_, stack| stack.iter().any(|grain| grain.1 != stack[0].1));
+        for stack in stacks.values_mut() {
+            // Stable: grains as high as each other stay in their order.
+            stack.sort_by(|a, b| b.0.total_cmp(&a.0));
+            for k in 0..stack.len() {
+                let (head, phase, _) = stack[k];
+                stack[k].2 = self.bearing(&stack[..k], head, phase);
+            }
+        }
+        stacks
+    }
+
+    /// p_eff of a grain of `phase` at a head under those of a stack that are above it [Pa].
+    fn bearing(&self, stack: &[(f64, u8, f64)], head: f64, phase: u8) -> f64 {
+        let weight = |phase: u8| {
+            let material = &self.materials[phase as usize];
+            let fluid = if material.is_saturated() {
+                material.grains.pore_density
+            } else {
+                0.0
+            };
+            (material.rest_density() - fluid).max(0.0)
+        };
+        let spacing = self.numerics.spacing * self.gravity_norm;
+        let own = weight(phase);
+        let above = stack.partition_point(|grain| grain.0 > head);
+        match stack[..above].last() {
+            Some((over, other, load)) if over - head <= GAP * spacing => {
+                load + 0.5 * (own + weight(*other)) * (over - head)
+            }
+            _ => 0.5 * own * spacing,
+        }
     }
 
     /// -g.x [m^2/s^2].

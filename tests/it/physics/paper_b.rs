@@ -96,6 +96,55 @@ fn columns_carry_the_buoyant_weight_of_the_bed() {
     }
 }
 
+/// A bed of 30 mm, on it as much of another material and water, all of it as wide as its tank.
+fn two_beds(upper: &str, water: bool) -> Scene {
+    let silt = "law = \"constant_friction\"\nfriction_angle = \"30 deg\"\ndensity = 1990\npore_fluid = \"water\"\n";
+    let mut text = layers().source.replace(
+        "[gauges.level]",
+        &format!(
+            "[materials.lower]\n{silt}[materials.upper]\n{upper}[bodies.upper]\nmaterial = \"upper\"\n\
+             box = {{ lower = [0, 0.03], upper = [0.1, 0.06] }}\n[gauges.level]"
+        ),
+    );
+    text = text.replace(
+        "[bodies.silt]\nmaterial = \"silt\"",
+        "[bodies.silt]\nmaterial = \"lower\"",
+    );
+    let above = "box = { lower = [0, 0.03], upper = [0.1, 0.06] }\n[walls";
+    let (from, to) = if water { (0.06, 0.09) } else { (0.1, 0.11) };
+    text = text.replace(
+        above,
+        &format!("box = {{ lower = [0, {from}], upper = [0.1, {to}] }}\n[walls"),
+    );
+    parse(&text.replace(
+        "material = \"silt\"\n[gauges.weight]",
+        "material = \"lower\"\n[gauges.weight]",
+    ))
+}
+
+/// What lies on a bed bears on it with its own weight: buoyant if it is saturated, whole if it is dry.
+#[test]
+fn columns_carry_what_lies_on_the_bed() {
+    let saturated = "law = \"constant_friction\"\nfriction_angle = \"30 deg\"\ndensity = 1700\npore_fluid = \"water\"\n";
+    let dry = "law = \"constant_friction\"\nfriction_angle = \"30 deg\"\ndensity = 1600\n";
+    for (upper, water, weight) in [(saturated, true, 700.0), (dry, false, 1600.0)] {
+        let (solver, state) = solve(&two_beds(upper, water), 0.0);
+        for (i, x) in state.grains.position.iter().enumerate() {
+            let material = solver.material_of(&state, i);
+            let expected = match (material.is_saturated(), x[1] < 0.03) {
+                (true, true) => (990.0 * (0.03 - x[1]) + weight * 0.03) * G,
+                (true, false) => weight * (0.06 - x[1]) * G,
+                (false, _) => continue,
+            };
+            let got = solver.effective_pressure()[i];
+            assert!(
+                (got - expected).abs() < 1e-9 * expected,
+                "{got} for {expected} at {x:?}"
+            );
+        }
+    }
+}
+
 /// A fluid of 1 Pa s between plates without slip 40 mm apart, driven by 1 kPa/m.
 #[test]
 fn a_channel_has_its_profile() {
