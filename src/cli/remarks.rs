@@ -1,13 +1,50 @@
 //! What is legal in a scene and seldom meant, in words for people: `sandgate info` and `sandgate run` tell it.
 
-use crate::scene::Scene;
+use crate::scene::{Dimension, Scene, WallGeometry};
 
 /// Share of a body's mass that its particles may miss or add without a word [1].
 const MASS_TOLERANCE: f64 = 0.01;
 
+/// Spacings that a wall is thick, or a gate.
+const ROWS: f64 = 4.0;
+
 /// Remarks on a scene, none for most.
 pub(super) fn remarks(scene: &Scene) -> Vec<String> {
-    gates(scene).into_iter().chain(bodies(scene)).collect()
+    let all = gates(scene).into_iter().chain(bodies(scene));
+    all.chain(thin_walls(scene)).collect()
+}
+
+/// Boxes thinner than a gate may be: what is wet on both sides is felt through them, or finds too little wall.
+fn thin_walls(scene: &Scene) -> Vec<String> {
+    let domain = &scene.domain;
+    let axes = match scene.dimension {
+        Dimension::Three => 3,
+        Dimension::Two | Dimension::Axisymmetric => 2,
+    };
+    let least = ROWS * scene.numerics.spacing;
+    let told = scene.walls.iter().filter_map(|wall| {
+        let WallGeometry::Box { lower, upper } = &wall.geometry else {
+            return None;
+        };
+        // Along a period that it fills a box has no sides.
+        let has_sides = |k: &usize| {
+            let period = domain.upper[*k] - domain.lower[*k];
+            !domain.periodic[*k] || upper[*k] - lower[*k] < period * (1.0 - 1e-9)
+        };
+        let sides = (0..axes).filter(has_sides).map(|k| upper[k] - lower[k]);
+        let thickness = sides.fold(f64::INFINITY, f64::min);
+        (thickness < least * (1.0 - 1e-9)).then(|| {
+            format!(
+                "note: wall {}: its box is {} thick, less than four spacings, {}: a force gauge on it may read too little,\n  \
+                 by a sixth under water and two fifths under sand at one spacing, and material on one side may feel what is on the other.\n  \
+                 Thicken the box, or refine numerics.spacing.",
+                wall.name,
+                length(thickness),
+                length(least),
+            )
+        })
+    });
+    told.collect()
 }
 
 /// Bodies whose particles weigh more or less than their shape.
@@ -125,6 +162,40 @@ mod tests {
         ] {
             let told = remarks(&with_body(dimension, body));
             assert_eq!(told, Vec::<String>::new(), "{body}");
+        }
+    }
+
+    #[test]
+    fn boxes_thinner_than_four_spacings_are_told() {
+        let with = |domain: &str, walls: &str| {
+            let text = format!(
+                "name = \"b\"\n[domain]\nlower = [0, -0.2]\nupper = [0.6, 0.6]\n{domain}\n[numerics]\nspacing = 0.01\n\
+                 [materials.water]\nlaw = \"fluid\"\npreset = \"water\"\n\
+                 [bodies.b]\nmaterial = \"water\"\nbox = {{ lower = [0, 0], upper = [0.1, 0.1] }}\n{walls}\n\
+                 [run]\nstep = 0.01\nuntil = 0.1\n",
+            );
+            remarks(&crate::scene::parse("b", &text).unwrap_or_else(|e| panic!("{e}")))
+        };
+        let part = |thick: f64| {
+            let right = 0.2 + thick;
+            format!("[walls.part]\nbox = {{ lower = [0.2, 0], upper = [{right}, 0.3] }}")
+        };
+        let told = with("", &part(0.03));
+        let [note] = &told[..] else {
+            panic!("{told:?}");
+        };
+        for said in [
+            "wall part",
+            "0.03 m thick",
+            "four spacings, 0.04 m",
+            "force gauge",
+        ] {
+            assert!(note.contains(said), "no {said:?} in {note}");
+        }
+        // A floor across the period is as thick as it is deep.
+        let floor = "[walls.floor]\nbox = { lower = [0, -0.04], upper = [0.6, 0] }";
+        for told in [with("", &part(0.04)), with("periodic = [\"x\"]", floor)] {
+            assert_eq!(told, Vec::<String>::new());
         }
     }
 

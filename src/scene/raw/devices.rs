@@ -23,7 +23,7 @@ table! {
         optional closed: Flag;
         /// Planar: a round wall with the material inside, a drum.
         optional circle: RawCircle;
-        /// A solid box, an obstacle.
+        /// A solid box, an obstacle. Thinner than 4 spacings it is too little wall: force gauges on it read up to two fifths too little.
         optional r#box: RawBox;
         /// A plane, with material on the side of its normal.
         optional plane: RawPlane;
