@@ -84,7 +84,12 @@ impl Lift<'_> {
         let all = ["box", "polygon", "circle", "column"];
         self.check_one_of(&entry.place, &raw.given, &all, keys, example)?;
         if let Some(circle) = &raw.circle {
-            let points = self.circle(circle)?;
+            let instead = if self.planar() {
+                "box or polygon"
+            } else {
+                "box or column"
+            };
+            let points = self.circle(circle, instead)?;
             return Some(Shape::Polygon { points });
         }
         match (&raw.r#box, &raw.polygon, &raw.column) {
@@ -149,11 +154,12 @@ impl Lift<'_> {
         })
     }
 
-    /// Corners of an outline in the plane.
+    /// Corners of an outline in the plane; `in_space` is what there is instead in space.
     pub(super) fn outline(
         &mut self,
         at: &At<List<Coordinates<Length>>>,
         least: usize,
+        in_space: &str,
     ) -> Option<Vec<[f64; 2]>> {
         let corners = &at.value.0;
         if !self.planar() {
@@ -161,7 +167,7 @@ impl Lift<'_> {
                 &at.place,
                 "a planar outline in a scene with dimension = 3",
                 "outlines only where dimension = 2",
-                "use box, column or plane, or set dimension = 2",
+                format!("use {in_space}, or set dimension = 2"),
             );
             return None;
         }
@@ -184,7 +190,7 @@ impl Lift<'_> {
 
     /// A simple polygon with an area.
     fn polygon(&mut self, at: &At<List<Coordinates<Length>>>) -> Option<Vec<[f64; 2]>> {
-        let points = self.outline(at, 3)?;
+        let points = self.outline(at, 3, "box or column")?;
         let eps = self.eps();
         let count = points.len();
         for i in 0..count {

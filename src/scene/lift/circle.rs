@@ -7,14 +7,14 @@ use crate::scene::raw::{At, RawCircle};
 pub(in crate::scene) const CIRCLES: (f64, f64) = (4.0, 300.0);
 
 impl Lift<'_> {
-    /// Corners of a circle, anticlockwise: its inside is on their left.
-    pub(super) fn circle(&mut self, at: &At<RawCircle>) -> Option<Vec<[f64; 2]>> {
+    /// Corners of a circle, anticlockwise: its inside is on their left. `instead` is what there is where circles are not.
+    pub(super) fn circle(&mut self, at: &At<RawCircle>, instead: &str) -> Option<Vec<[f64; 2]>> {
         if !self.planar() || self.axisymmetric() {
             self.problems.report(
                 &at.place,
                 format!("a circle in {}", self.kind()),
                 "circles only where dimension = 2",
-                "use box, column, polyline or plane, or set dimension = 2",
+                format!("use {instead}, or set dimension = 2"),
             );
             return None;
         }

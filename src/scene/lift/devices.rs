@@ -1,7 +1,7 @@
 //! Inflows and outflows.
 
 use super::Lift;
-use super::faces::Face;
+use super::faces::{Face, example_of_span};
 use super::geometry::Region;
 use crate::math::{cross, dot, length, normalized, sub};
 use crate::scene::raw::{Entry, Place, RawInflow, RawOutflow};
@@ -29,10 +29,11 @@ impl Lift<'_> {
             let known = self.raw.materials.as_ref();
             self.index_of(&name.value.0, &name.place, "materials", known)
         });
-        let span = self.span(raw.span.as_ref(), &raw.given, &entry.place);
         let from = raw.from.as_ref().and_then(|p| self.point(p));
         let to = raw.to.as_ref().and_then(|p| self.point(p));
         let velocity = raw.velocity.as_ref().and_then(|v| self.vector(v));
+        let example = example_of_span(from, to, velocity);
+        let span = self.span(raw.span.as_ref(), &raw.given, &entry.place, &example);
         let (from, to, span) = (from?, to?, span?);
         if !self.check_face(&entry.place, from, to, span) {
             return None;

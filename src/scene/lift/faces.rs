@@ -64,6 +64,31 @@ impl Face {
     }
 }
 
+/// A span as it may be written for a face that has none: as long as the edge and across it, and such that `velocity` leaves
+/// the face of an inflow.
+pub(super) fn example_of_span(
+    from: Option<Point>,
+    to: Option<Point>,
+    velocity: Option<Point>,
+) -> String {
+    let edge = from.zip(to).map(|(from, to)| sub(&to, &from));
+    let across = |edge: &Point, way: Point| normalized(&cross(&way, edge));
+    // Along y where nothing else is asked for; to the side of an edge along y.
+    let ways = [
+        velocity.unwrap_or([0.0; 3]),
+        [0.0, 0.0, 1.0],
+        [1.0, 0.0, 0.0],
+    ];
+    let fits = edge.and_then(|edge| {
+        let unit = ways.into_iter().find_map(|way| across(&edge, way))?;
+        let size = length(&edge);
+        // To micrometres, and without the sign of a zero.
+        Some(unit.map(|c| (c * size * 1e6).round() / 1e6 + 0.0))
+    });
+    let [x, y, z] = fits.unwrap_or([0.0, 0.1, 0.0]);
+    format!("span = [{x}, {y}, {z}]")
+}
+
 /// Places in the plate of a gate in space where it covers its gap at the start, about a spacing apart, the first layer half
 /// a spacing behind its face.
 pub(super) fn plate_places(gate: &Gate, spacing: f64) -> Vec<Point> {

@@ -1,6 +1,7 @@
 //! Gauges.
 
 use super::Lift;
+use super::faces::example_of_span;
 use crate::math::{dot, length, sub};
 use crate::scene::raw::{
     At, Coordinates, Entry, Length, Place, Ratio, RawFront, RawGauge, RawProfile,
@@ -35,9 +36,10 @@ impl Lift<'_> {
             }
             RawGauge::Profile(raw) => self.profile(&entry.place, raw),
             RawGauge::Discharge(raw) => {
-                let span = self.span(raw.span.as_ref(), &raw.given, &entry.place);
                 let from = raw.from.as_ref().and_then(|p| self.point(p));
                 let to = raw.to.as_ref().and_then(|p| self.point(p));
+                let example = example_of_span(from, to, None);
+                let span = self.span(raw.span.as_ref(), &raw.given, &entry.place, &example);
                 let (from, to, span) = (from?, to?, span?);
                 self.check_face(&entry.place, from, to, span);
                 Some(GaugeKind::Discharge { from, to, span })

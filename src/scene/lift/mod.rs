@@ -275,12 +275,13 @@ impl<'r> Lift<'r> {
         unit
     }
 
-    /// The second edge of a face: needed in space, refused in the plane.
+    /// The second edge of a face: needed in space, where `example` is one that fits, refused in the plane.
     fn span<Q>(
         &mut self,
         span: Option<&At<Coordinates<Q>>>,
         given: &[&str],
         table: &Place,
+        example: &str,
     ) -> Option<Point> {
         match (span, self.planar()) {
             (None, true) => Some([0.0; 3]),
@@ -300,7 +301,7 @@ impl<'r> Lift<'r> {
                     &table.child("span"),
                     "nothing",
                     "the vector of the face's second edge, because dimension = 3",
-                    "add for example span = [0, 0.1, 0]",
+                    format!("add for example {example}"),
                 );
                 None
             }

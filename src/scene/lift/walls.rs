@@ -1,7 +1,7 @@
 //! Walls and gates.
 
 use super::Lift;
-use super::faces::plate_places;
+use super::faces::{example_of_span, plate_places};
 use super::geometry::{Region, crossing_edges};
 use crate::math::{cross, length, normalized, sub};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
@@ -109,7 +109,12 @@ impl Lift<'_> {
         let (geometry, solid) = if raw.polyline.is_some() {
             self.polyline(raw)?
         } else if let Some(circle) = &raw.circle {
-            let points = self.circle(circle)?;
+            let instead = if self.planar() {
+                "polyline, box or plane"
+            } else {
+                "box or plane"
+            };
+            let points = self.circle(circle, instead)?;
             let next = |i: usize| points[(i + 1) % points.len()];
             let segments = (0..points.len()).map(|i| (points[i], next(i))).collect();
             let heights: Vec<f64> = points
@@ -147,7 +152,7 @@ impl Lift<'_> {
     fn polyline(&mut self, raw: &RawWall) -> Option<(WallGeometry, Solid)> {
         let at = raw.polyline.as_ref()?;
         let closed = raw.closed.as_ref().is_some_and(|c| c.value.0);
-        let points = self.outline(at, if closed { 3 } else { 2 })?;
+        let points = self.outline(at, if closed { 3 } else { 2 }, "box or plane")?;
         let eps = self.eps();
         let mut segments = Vec::new();
         let count = if closed {
@@ -225,9 +230,10 @@ impl Lift<'_> {
     }
 
     fn gate(&mut self, entry: &Entry<RawGate>, raw: &RawGate) -> Option<Gate> {
-        let span = self.span(raw.span.as_ref(), &raw.given, &entry.place);
         let from = raw.from.as_ref().and_then(|p| self.point(p));
         let to = raw.to.as_ref().and_then(|p| self.point(p));
+        let example = example_of_span(from, to, None);
+        let span = self.span(raw.span.as_ref(), &raw.given, &entry.place, &example);
         let thickness = self.thickness(raw);
         let slip = self.slip(
             &entry.place,
