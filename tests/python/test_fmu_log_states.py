@@ -331,10 +331,9 @@ def test_a_log_that_met_a_full_disk_begins_again_where_there_is_room(what, tmp_p
 
 def test_what_one_call_sets_beside_saturate_inputs_runs_again(tmp_path):
     library = logging_library(str(tmp_path), "required = true").initialize()
-    library.set("saturate_inputs", 1.0)
     both_at_once = (ctypes.c_uint32 * 2)(library.references["saturate_inputs"], library.references[GATE])
     two = ctypes.c_size_t(2)
-    library.check(library.lib.sandgate_set(library.handle, both_at_once, two, (ctypes.c_double * 2)(0.0, 5.0), two))
+    library.check(library.lib.sandgate_set(library.handle, both_at_once, two, (ctypes.c_double * 2)(1.0, 5.0), two))
     assert library.get([GATE]) == [1.0]
     library.step(0.0, H)
     library.check(library.lib.sandgate_terminate(library.handle))
