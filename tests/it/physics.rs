@@ -19,6 +19,7 @@ mod packing;
 mod paper_a;
 mod paper_b;
 mod phases;
+mod pores;
 mod rest;
 mod rheology;
 mod roofs;
