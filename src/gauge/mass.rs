@@ -31,7 +31,7 @@ impl<const D: usize> MassBox<D> {
         if !view.periodic[axis] {
             return within(0.0);
         }
-        // A box meets the domain and is at most a period wide: no further image reaches it.
+        // A box meets the domain: of one narrower than a period no further image reaches it, and a wider one holds all, once.
         let period = view.upper[axis] - view.lower[axis];
         [0.0, period, -period].into_iter().any(within)
     }
@@ -84,5 +84,10 @@ mod tests {
         let all = mass(0.0, length);
         let turned = mass(0.3 * length, 1.3 * length);
         assert!((turned - all).abs() < 1e-12 * all, "{turned} {all}");
+        // A box with room to spare holds each particle once.
+        for (from, to) in [(-1.0, 2.0), (-0.2, 1.1), (0.4, 2.7)] {
+            let wide = mass(from * length, to * length);
+            assert!((wide - all).abs() < 1e-12 * all, "{wide} {all}");
+        }
     }
 }

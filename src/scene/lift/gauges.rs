@@ -132,16 +132,6 @@ impl Lift<'_> {
         let eps = self.eps();
         for axis in 0..self.axes() {
             let name = Self::axis_name(axis);
-            let period = domain.upper[axis] - domain.lower[axis];
-            if domain.periodic[axis] && upper[axis] - lower[axis] > period * (1.0 + 1e-9) {
-                self.problems.report(
-                    upper_at,
-                    format!("a box {} m wide along {name}", upper[axis] - lower[axis]),
-                    format!("at most {period} m, the period of {name}"),
-                    "make the box as wide as the period or narrower: it counts images across periodic sides",
-                );
-                return None;
-            }
             let (place, found, allowed) = if lower[axis] >= domain.upper[axis] - eps {
                 let side = domain.upper[axis];
                 (
