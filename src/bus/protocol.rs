@@ -33,6 +33,8 @@ pub struct Protocol {
     free_running: Option<f64>,
     answered: Answered<Reply>,
     broken: bool,
+    /// Why nothing goes on any more, if so.
+    over: Option<String>,
     notes: Option<Notes>,
 }
 
@@ -50,6 +52,7 @@ impl Protocol {
             free_running,
             answered: Answered::default(),
             broken: false,
+            over: None,
             notes: None,
         }
     }
@@ -96,6 +99,12 @@ impl Protocol {
     /// Steps by itself from now on, at `factor` of simulated over wall time.
     pub(super) fn run_freely(&mut self, factor: f64) {
         self.free_running = Some(factor);
+    }
+
+    /// Nothing goes on from now on: who asks for it is told `why`.
+    pub(super) fn end(&mut self, why: String) {
+        self.free_running = None;
+        self.over = Some(why);
     }
 
     /// Counts resets and restores.
@@ -157,6 +166,7 @@ impl Protocol {
         observer: &mut dyn Observer,
     ) -> Result<(), Refusal> {
         self.guarded(|protocol| {
+            protocol.goes_on()?;
             protocol.whole()?;
             let inputs = [(point.variable.clone(), point.values.clone())];
             let assignment = Assignment::resolve(component.variables(), &inputs)?;
@@ -177,6 +187,7 @@ impl Protocol {
         let time = component.time();
         let h = step_end(time, component.scene().run.step) - time;
         let outcome = self.guarded(|protocol| {
+            protocol.goes_on()?;
             protocol.whole()?;
             advance(
                 component,
@@ -211,6 +222,18 @@ impl Protocol {
                 ),
             ))
         })
+    }
+
+    /// Whether it is not over.
+    fn goes_on(&self) -> Result<(), Refusal> {
+        let Some(why) = &self.over else {
+            return Ok(());
+        };
+        let message = format!(
+            "the component ends, because its log must be whole (log.required): {why}; describe, status, get, save, log and \
+             terminate are still carried out"
+        );
+        Err(Refusal::new(Code::State, message))
     }
 
     /// After a panic only calls that build the state anew are safe.

@@ -21,10 +21,14 @@ use crate::wire::messages::CommandKind;
 use pace::Pace;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::RecvTimeoutError;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How often the stepping thread looks whether it shall stop when nobody asks anything.
 const LOOK_UP: Duration = Duration::from_millis(50);
+
+/// How long a server stays to be asked why, once its log broke off that must be whole: as long as Zenoh's lease, after which
+/// who stands still counts as gone.
+const FAREWELL: Duration = Duration::from_secs(10);
 
 /// The component and its queues.
 pub(super) struct Stepper<'a> {
@@ -33,15 +37,18 @@ pub(super) struct Stepper<'a> {
     pub(super) shared: &'a Shared,
     pub(super) tasks: Taker,
     pub(super) watch: Watch,
+    /// When it ends, once nothing may go on.
+    pub(super) ends: Option<Instant>,
 }
 
 impl Stepper<'_> {
-    /// Works until told to stop, until `terminate`, or until nobody can ask any more.
+    /// Works until told to stop, until `terminate`, until nobody can ask any more, or until a while after `observer` could not
+    /// go on.
     pub(super) fn run(&mut self, observer: &mut dyn Observer, stop: &AtomicBool) {
         let mut pace: Option<Pace> = None;
         // Turns since the orchestrator's silence lasted too long.
         let mut overdue = 0;
-        while !stop.load(Relaxed) {
+        while !stop.load(Relaxed) && self.ends.is_none_or(|end| Instant::now() < end) {
             self.protocol.tell_notes(&self.component, observer);
             self.tell_trouble(observer);
             let wait = match self.protocol.free_running() {
@@ -239,7 +246,8 @@ impl Stepper<'_> {
         observer.on_log(self.component.time(), LogLevel::Warning, "bus", text);
     }
 
-    /// `status` has why the log ended, and `out/log` has it once.
+    /// `status` has why the log ended, and `out/log` has it once. If nothing may go on without it, so does each refusal from
+    /// now on.
     fn tell_trouble(&mut self, observer: &mut dyn Observer) {
         if self.shared.has_log_failure() {
             return;
@@ -247,6 +255,11 @@ impl Stepper<'_> {
         if let Some(why) = observer.trouble() {
             self.shared.set_log_failure(Some(why.clone()));
             observer.on_log(self.component.time(), LogLevel::Error, "bus", &why);
+            if observer.ends() {
+                self.ends = Some(Instant::now() + FAREWELL);
+                self.protocol.end(why);
+                self.publish_status();
+            }
         }
     }
 

@@ -113,12 +113,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     component.set_threads(usize::from(args.threads));
     let stop = stop::on_interrupt("stopping after this step")?;
     let mut log = match &args.log {
-        Some(file) => Some(Log::create(
-            file,
-            &component,
-            &options.instance,
-            stop.clone(),
-        )?),
+        Some(file) => Some(Log::create(file, &component, &options.instance)?),
         None => None,
     };
     let mut nobody = Unobserved;

@@ -58,6 +58,11 @@ pub trait Observer: Send {
     fn trouble(&self) -> Option<String> {
         None
     }
+
+    /// Whether nothing may go on because of that trouble.
+    fn ends(&self) -> bool {
+        false
+    }
 }
 
 /// Two observers as one; the first one hears everything first.
@@ -120,6 +125,9 @@ impl Observer for Both<'_> {
     }
     fn trouble(&self) -> Option<String> {
         self.0.trouble().or_else(|| self.1.trouble())
+    }
+    fn ends(&self) -> bool {
+        self.0.ends() || self.1.ends()
     }
 }
 

@@ -1,7 +1,6 @@
 """A served silo, watched and driven by Python clients: `SANDGATE` is the program, `SANDGATE_ROOT` the source tree."""
 
 import base64
-import contextlib
 import json
 import os
 import pathlib
@@ -918,9 +917,19 @@ def test_a_full_disk_ends_the_log_and_the_component_only_if_it_must(tmp_path, sm
                 steps = 0
                 end = time.monotonic() + 60
                 while not lines and process.poll() is None and time.monotonic() < end:
-                    with contextlib.suppress(TimeoutError, Refused):
+                    try:
                         steps = silo.ask("step", dt_ns=200_000, timeout=10.0)["step"]
+                    except Refused as refused:
+                        assert required and refused.reply["code"] == "state"
+                        assert "log stopped at simulated time" in refused.reply["message"]
+                        break
+                    except TimeoutError:
+                        pass
                 if required:
+                    # It can be asked why, and what it computed can be rescued.
+                    assert "log stopped at simulated time" in silo.ask("status")["log_failure"]
+                    assert silo.ask("save")["step"] == steps
+                    silo.ask("terminate")
                     process.wait(timeout=60)
                 else:
                     until(lambda: "log stopped at simulated time" in (silo.ask("status")["log_failure"] or ""))

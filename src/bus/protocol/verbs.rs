@@ -27,6 +27,12 @@ impl Protocol {
     ) -> Result<Fields, Refusal> {
         if !matches!(
             request.verb,
+            Verb::Describe | Verb::Status | Verb::Get | Verb::Save | Verb::Log | Verb::Terminate
+        ) {
+            self.goes_on()?;
+        }
+        if !matches!(
+            request.verb,
             Verb::Describe | Verb::Status | Verb::Log | Verb::Reset | Verb::Restore
         ) {
             self.whole()?;

@@ -188,6 +188,7 @@ impl Server {
             shared: &self.shared,
             tasks: self.tasks,
             watch: self.watch,
+            ends: None,
         };
         stepper.run(&mut Both(observer, &mut self.publisher), stop);
         // Nobody gets in any more; who still waits is answered; then the queues of the two threads have no senders left,

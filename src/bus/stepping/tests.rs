@@ -91,6 +91,7 @@ fn what_still_waits_at_the_end_is_answered_and_told() {
         shared: &shared,
         tasks,
         watch: Watch::new(None),
+        ends: None,
     };
     let mut heard = Heard::default();
     let why = Refusal::new(Code::State, "the server ended");
@@ -161,6 +162,7 @@ fn set_points_are_told_as_they_are_taken_or_refused() {
         shared: &shared,
         tasks,
         watch: Watch::new(None),
+        ends: None,
     };
     let mut heard = Heard::default();
     for (variable, body) in [
@@ -213,8 +215,59 @@ fn set_points_that_keep_coming_are_no_orchestrator() {
             shared: &shared,
             tasks,
             watch,
+            ends: None,
         };
         stepper.run(&mut Unobserved, &stop);
     });
     assert!(shared.orchestrator_lost.load(Relaxed));
+}
+
+/// A log that must be whole and is not.
+struct Broken;
+
+impl Observer for Broken {
+    fn on_initialize(&mut self, _: &Component, _: f64, _: Option<f64>, _: &str) {}
+    fn on_input(&mut self, _: &Component, _: &[ValueReference], _: &[f64], _: &str) {}
+    fn on_step(&mut self, _: &Component, _: &StepReport, _: f64, _: f64, _: &str) {}
+    fn on_command(&mut self, _: &Command) {}
+    fn on_reply(&mut self, _: &Command) {}
+    fn on_jump(&mut self, _: &Component, _: AppliedEvent, _: &str) {}
+    fn on_log(&mut self, _: f64, _: LogLevel, _: &str, _: &str) {}
+    fn trouble(&self) -> Option<String> {
+        Some("the disk is full".to_owned())
+    }
+    fn ends(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn without_the_log_that_it_needs_a_component_answers_for_a_while_and_does_nothing() {
+    let (component, mut protocol) = silo(Protocol::new("sandgate/v1/silo", None));
+    protocol.run_freely(f64::INFINITY);
+    let shared = Shared::new(protocol.status(&component));
+    let (give, tasks) = tasks(Settable::of(component.variables()));
+    let answers = Arc::new(Mutex::new(Vec::new()));
+    for (verb, body) in [
+        (Verb::Step, r#"{"req":"1"}"#),
+        (Verb::Reset, r#"{"req":"2"}"#),
+        (Verb::Get, "{}"),
+        (Verb::Save, r#"{"req":"3"}"#),
+        (Verb::Terminate, r#"{"req":"4"}"#),
+    ] {
+        assert!(give.call(call(verb, body, &answers)).is_ok());
+    }
+    let mut stepper = Stepper {
+        component,
+        protocol,
+        shared: &shared,
+        tasks,
+        watch: Watch::new(None),
+        ends: None,
+    };
+    stepper.run(&mut Broken, &AtomicBool::new(false));
+    let answers = answers.lock().unwrap();
+    assert_eq!(*answers, ["state", "state", "ok", "ok", "ok"]);
+    assert!(shared.has_log_failure());
+    assert_eq!(stepper.component.communication_steps(), 0);
 }

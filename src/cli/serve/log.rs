@@ -1,8 +1,6 @@
 //! The log of a served component: the recorder, and what happens when it fails.
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::cli::CliError;
 use crate::component::{Component, StepReport, ValueReference};
@@ -11,12 +9,11 @@ use crate::wire::Observer;
 use crate::wire::foxglove::LogLevel;
 use crate::wire::messages::{AppliedEvent, Command};
 
-/// A recorder that says once when it fails, and stops the server if the scene says that the log is required.
+/// A recorder that says once when it fails, and that nothing goes on without it if the scene says that the log is required.
 pub(super) struct Log {
     recorder: Recorder,
     required: bool,
     failed: bool,
-    stop: Arc<AtomicBool>,
 }
 
 impl Log {
@@ -28,7 +25,6 @@ impl Log {
         file: &Path,
         component: &Component,
         instance: &str,
-        stop: Arc<AtomicBool>,
     ) -> Result<Self, CliError> {
         let options = RecordOptions {
             instance: instance.to_owned(),
@@ -38,7 +34,6 @@ impl Log {
             required: options.required,
             recorder: Recorder::create(file, component, options)?,
             failed: false,
-            stop,
         })
     }
 
@@ -63,10 +58,8 @@ impl Log {
         }
         if let Some(failure) = self.recorder.failure() {
             self.failed = true;
-            if self.required {
-                // `finish` tells why.
-                self.stop.store(true, Ordering::SeqCst);
-            } else {
+            // Of one that is required `finish` tells.
+            if !self.required {
                 tell!("warning: {failure}; the component goes on without its log");
             }
         }
@@ -99,6 +92,9 @@ impl Observer for Log {
     }
     fn trouble(&self) -> Option<String> {
         self.recorder.trouble()
+    }
+    fn ends(&self) -> bool {
+        self.required && self.recorder.failure().is_some()
     }
     fn on_log(&mut self, time: f64, level: LogLevel, name: &str, message: &str) {
         self.recorder.on_log(time, level, name, message);
