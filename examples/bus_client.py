@@ -62,6 +62,16 @@ class Component:
             raise Refused(reply)
         return reply
 
+    def watch_end(self, ended):
+        """Calls `ended()` when the component is gone, at once if its process ends. Keep what this returns for as long as you
+        want to know. With `history`, without which a client is not told that a component which was there before it was killed."""
+
+        def tell(sample):
+            if sample.kind == zenoh.SampleKind.DELETE:
+                ended()
+
+        return self.session.liveliness().declare_subscriber(f"{self.base}/@alive", tell, history=True)
+
     def message_classes(self):
         """Classes that decode what is published, by name: `sandgate.Gauge`, ..."""
         classes = {}
@@ -87,6 +97,7 @@ def main(endpoint, instance):
                 arrived.notify_all()
 
         subscriber = session.declare_subscriber(f"{silo.base}/out/gauge/**", keep)
+        watch = silo.watch_end(lambda: print("the silo has gone", file=sys.stderr))
 
         # A set-point, as a PLC would send it; it takes effect with the next step.
         session.put(f"{silo.base}/in/gate.main.opening", "0.5")
@@ -102,6 +113,7 @@ def main(endpoint, instance):
             print(f"t = {gauge.time:.3f} s  {name} = {values} {gauge.unit}")
         ledger = silo.ask("status")["ledger"]
         print(f"mass present {ledger['present']:.4f} kg, account off by {ledger['error']} kg")
+        watch.undeclare()
         subscriber.undeclare()
 
 

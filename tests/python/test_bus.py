@@ -459,6 +459,19 @@ def test_it_runs_by_itself_at_the_pace_it_was_told():
         assert silo.ask("step")["step"] == paused["step"] + 1
 
 
+def test_a_client_of_the_example_sees_the_end_of_a_killed_component():
+    server = Server()
+    with open_session(server.endpoint) as session:
+        silo, gone = Component(session, "small_silo", client="pytest"), threading.Event()
+        watch = silo.watch_end(gone.set)
+        silo.ask("status")
+        assert not gone.is_set()
+        server.process.kill()
+        assert gone.wait(20)
+        watch.undeclare()
+    server.end()
+
+
 def test_the_liveliness_token_ends_with_the_process():
     server = Server()
     # The watcher listens, so that it does not depend on what it watches.
