@@ -192,7 +192,7 @@ impl Instance {
         }
         self.journal
             .reply(&self.component, fault.map_or(Ok(()), Err));
-        if let Some(complaint) = self.journal.take_complaint() {
+        while let Some(complaint) = self.journal.take_complaint() {
             self.log.say(Category::Warning, Status::Warning, &complaint);
         }
         if let Some(event) = self.journal.take_event() {

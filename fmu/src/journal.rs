@@ -47,6 +47,8 @@ pub(crate) struct Journal {
     /// Whether a failure has been told.
     complained: bool,
     complaint: Option<String>,
+    /// Why a session is left open, though it should be closed.
+    unclosed: Option<String>,
     /// Something to tell the importer.
     event: Option<String>,
 }
@@ -70,6 +72,7 @@ impl Journal {
             owned: Vec::new(),
             complained: false,
             complaint: None,
+            unclosed: None,
             event: None,
         }
     }
@@ -205,9 +208,11 @@ impl Journal {
         self.watch()
     }
 
-    /// A failure of a log that is not required, once.
+    /// A failure that keeps nothing from going on, once: of a log that is not required, of a session's end.
     pub(crate) fn take_complaint(&mut self) -> Option<String> {
-        let complaint = self.complaint.take()?;
+        let Some(complaint) = self.complaint.take() else {
+            return self.unclosed.take();
+        };
         self.complained = true;
         Some(format!("{complaint}; the component goes on without it"))
     }

@@ -51,6 +51,15 @@ pub enum BusError {
         /// Zenoh's words.
         reason: String,
     },
+    /// Closing the session took too long.
+    #[error(
+        "the session was not closed within {seconds} s, because a subscriber takes nothing of what is published; what is left \
+         of it ends with the process"
+    )]
+    LeftOpen {
+        /// How long that was waited for [s].
+        seconds: u64,
+    },
     /// The name is taken.
     #[error(
         "an instance {instance:?} is already served there; choose another name {}, or end the other one",

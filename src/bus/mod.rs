@@ -44,7 +44,7 @@ pub use reach::Reach;
 pub use refusal::{Code, Refusal};
 pub use reply::Reply;
 pub use request::Request;
-pub use serve::{Beside, Outlet, ServeOptions, Server, ZenohConfig};
+pub use serve::{Beside, Leaving, Outlet, ServeOptions, Server, ZenohConfig};
 pub use set_point::SetPoint;
 pub use status::Status;
 pub use verb::Verb;

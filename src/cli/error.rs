@@ -141,7 +141,10 @@ impl CliError {
             Self::Bus(error) => match error {
                 BusError::Instance(_) | BusError::Endpoint(_) | BusError::Config { .. } => 2,
                 BusError::Component(_) => 3,
-                BusError::Zenoh { .. } | BusError::Taken { .. } | BusError::Thread(_) => 6,
+                BusError::Zenoh { .. }
+                | BusError::LeftOpen { .. }
+                | BusError::Taken { .. }
+                | BusError::Thread(_) => 6,
             },
             Self::ReaderGone => 0,
         }

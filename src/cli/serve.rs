@@ -123,13 +123,17 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     };
     let server = Server::open(component, &options, observer)?;
     announce(&server, &options)?;
-    let (component, closed) = server.run(observer, &stop);
+    let (component, session) = server.run(observer, &stop);
     let why = match component.mode() {
         Mode::Terminated if args.when_lost == Then::Terminate => "terminated",
         Mode::Terminated => "terminated by a client",
         _ => "stopped",
     };
+    // Before the session is closed, which may take a while.
     let logged = log.map_or(Ok(String::new()), |log| log.finish(&component, why));
+    if let Err(open) = session.close() {
+        tell!("warning: {open}");
+    }
     say(&format!(
         "{why} at t = {} s after {} communication steps",
         component.time(),
@@ -139,7 +143,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if !logged.is_empty() {
         say(&logged)?;
     }
-    Ok(closed?)
+    Ok(())
 }
 
 /// Where clients find it, one place a line, for people and programs.

@@ -12,6 +12,7 @@ import json
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -346,6 +347,42 @@ def test_a_thousand_instances_with_log_and_zenoh_leave_what_is_documented(versio
     until(lambda: all(now <= then for now, then in zip((*open_things(), sockets()), first)))
     assert len(os.listdir(tmp_path)) == 1000 and not any(file.name.endswith(".part") for file in tmp_path.iterdir())
     fmu.free()
+
+
+def test_a_subscriber_that_takes_nothing_keeps_no_fmu_from_ending(tmp_path):
+    """It ends with its log whole, and the next one of the process is heard."""
+    log = tmp_path / "run.mcap"
+    text = f"""
+import sys, time
+sys.path.insert(0, {os.environ["SANDGATE_ROOT"] + "/examples"!r})
+from bus_client import open_session
+with open_session(sys.argv[1]) as session:
+    kept = session.declare_subscriber("{BASE}/out/**", lambda sample: None)
+    print("subscribed", flush=True)
+    time.sleep(600)
+"""
+    with Published(3, log__path=str(log)) as p:
+        child = subprocess.Popen([sys.executable, "-c", text, p.endpoint], stdout=subprocess.PIPE, text=True)
+        try:
+            assert child.stdout.readline() == "subscribed\n"
+            child.send_signal(signal.SIGSTOP)
+            for k in range(1500):
+                p.fmu.step(k * H / 100, H / 100)
+            began = time.monotonic()
+            p.fmu.fmu.terminate()
+            # It gives up closing after 3 s; the rest is for a slow machine.
+            assert time.monotonic() - began < 15
+            assert log.exists() and not os.path.exists(f"{log}.part")
+        finally:
+            child.kill()
+            child.wait()
+    with Published(3) as p:
+        heard = []
+        watch = p.session.declare_subscriber(f"{p.client.base}/out/**", heard.append)
+        p.client.ask("status")
+        p.fmu.step(0.0, H)
+        until(lambda: heard)
+        watch.undeclare()
 
 
 def test_the_c_library_publishes_alike():

@@ -14,7 +14,7 @@ import pytest
 
 sys.path.insert(0, os.path.dirname(__file__))
 
-from serving import BASE, ROOT, served
+from serving import BASE, ROOT, Server, Component, open_session, served
 
 GAUGE = f"{BASE}/out/gauge/level.depth"
 
@@ -78,6 +78,35 @@ def test_a_subscriber_that_takes_nothing_holds_up_nobody(how):
             child.kill()
             child.wait()
         other.undeclare()
+
+
+@pytest.mark.parametrize("how", ["by a signal", "by a client"])
+def test_a_subscriber_that_takes_nothing_keeps_no_server_from_ending(how, tmp_path):
+    """Ended by either, with its log whole, though what is published has nowhere to go: particles fill the queue in which
+    Zenoh's own last message waits."""
+    log = tmp_path / "served.mcap"
+    server = Server("--log", str(log))
+    child = watcher(server.endpoint, 0.0)
+    try:
+        child.send_signal(signal.SIGSTOP)
+        with open_session(server.endpoint) as session:
+            silo = Component(session, "small_silo", client="pytest")
+            for _ in range(2000):
+                silo.ask("step", dt_ns=100_000)
+            if how == "by a client":
+                silo.ask("terminate")
+        began = time.monotonic()
+        if how == "by a signal":
+            server.process.send_signal(signal.SIGTERM)
+        # It gives up closing after 3 s; the rest is for a slow machine.
+        said = server.process.communicate(timeout=20)[1]
+        assert time.monotonic() - began < 15, said
+        assert server.process.returncode == 0, said
+        assert log.exists() and not os.path.exists(f"{log}.part")
+    finally:
+        child.kill()
+        child.wait()
+        server.process.kill()
 
 
 def test_a_client_that_was_stopped_goes_on_asking():

@@ -145,7 +145,7 @@ impl Instance {
     /// The instance is at its end: so is its log. What fails now is told to the importer's logger.
     pub(crate) fn finish(mut self, reason: &str) {
         self.end_journal(reason);
-        if let Some(complaint) = self.journal.take_complaint() {
+        while let Some(complaint) = self.journal.take_complaint() {
             self.log.say(Category::Warning, Status::Warning, &complaint);
         }
     }

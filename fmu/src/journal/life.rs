@@ -6,7 +6,7 @@ use sandgate::record::{RecordOptions, Recorder};
 use sandgate::wire::Unobserved;
 use sandgate::wire::messages::AppliedEvent;
 
-use super::network::Network;
+use super::network::{Network, Parting};
 use super::{Journal, listener, told};
 use crate::fault::Fault;
 
@@ -120,15 +120,21 @@ impl Journal {
                 *jumps = jumps.saturating_sub(1);
             }
         }
-        self.disconnect();
+        let parting = self.leave();
+        self.close(parting);
     }
 
-    fn disconnect(&mut self) {
+    /// The network's part in the end of the log: it hears what was asked to the last. Closing the session comes after the
+    /// log's end, because it may take a while.
+    fn leave(&mut self) -> Option<Parting> {
         self.owned.clear();
-        if let Some(network) = self.network.take()
-            && let Err(why) = network.close(listener(&mut self.log, &mut Unobserved))
-        {
-            self.complaint = Some(why);
+        let network = self.network.take()?;
+        Some(network.leave(listener(&mut self.log, &mut Unobserved)))
+    }
+
+    fn close(&mut self, parting: Option<Parting>) {
+        if let Some(parting) = parting {
+            self.unclosed = parting().err();
         }
     }
 
@@ -168,7 +174,7 @@ impl Journal {
                 Err(fault) if settings.log_required => {
                     if let Some(network) = begun.network {
                         // Nobody has seen it yet; why the state is refused is what counts.
-                        let _ = network.close(&mut Unobserved);
+                        let _ = network.leave(&mut Unobserved)();
                     }
                     return Err(fault);
                 }
@@ -194,13 +200,13 @@ impl Journal {
 
     /// The component was reset, or is no longer what it was: nothing more is told.
     pub(crate) fn end(&mut self, reason: &str) {
-        // First, so that the log has what was asked to the last.
-        self.disconnect();
+        let parting = self.leave();
         if let Some(log) = self.take()
             && let Err(error) = log.end(reason)
         {
             self.complaint = Some(error.to_string());
         }
+        self.close(parting);
     }
 
     /// The log, and remembers how often its component has jumped.
@@ -214,11 +220,13 @@ impl Journal {
 
     /// The component has come to its end: so do log and publications.
     pub(crate) fn finish(&mut self, component: &Component, reason: &str) -> Result<(), Fault> {
-        self.disconnect();
-        let Some(log) = self.take() else {
+        let parting = self.leave();
+        let finished = self.take().map(|log| log.finish(component, reason));
+        self.close(parting);
+        let Some(finished) = finished else {
             return Ok(());
         };
-        let finished = log.finish(component, reason).map_err(told)?;
+        let finished = finished.map_err(told)?;
         if let Some(failure) = finished.failure
             && !self.complained
         {

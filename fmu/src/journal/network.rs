@@ -4,6 +4,9 @@ use sandgate::bus::{Beside, ServeOptions, ZenohConfig};
 use sandgate::component::Component;
 use sandgate::wire::Observer;
 
+/// Closes a session, within seconds.
+pub(super) type Parting = Box<dyn FnOnce() -> Result<(), String>>;
+
 /// An open session.
 pub(super) struct Network(Beside);
 
@@ -59,7 +62,9 @@ impl Network {
         self.0.tell_notes(log);
     }
 
-    pub(super) fn close(self, log: &mut dyn Observer) -> Result<(), String> {
-        self.0.close(log).map_err(|error| error.to_string())
+    /// Nobody gets in any more, and what waits is published; the log hears what was asked to the last.
+    pub(super) fn leave(self, log: &mut dyn Observer) -> Parting {
+        let leaving = self.0.leave(log);
+        Box::new(move || leaving.close().map_err(|error| error.to_string()))
     }
 }

@@ -5,6 +5,9 @@ use sandgate::component::Component;
 use sandgate::fmi::library::WITHOUT_ZENOH;
 use sandgate::wire::Observer;
 
+/// Closes a session.
+pub(super) type Parting = Box<dyn FnOnce() -> Result<(), String>>;
+
 /// A session that cannot be.
 pub(super) enum Network {}
 
@@ -40,7 +43,7 @@ impl Network {
         match *self {}
     }
 
-    pub(super) fn close(self, _: &mut dyn Observer) -> Result<(), String> {
+    pub(super) fn leave(self, _: &mut dyn Observer) -> Parting {
         match self {}
     }
 }

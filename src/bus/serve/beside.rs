@@ -4,10 +4,11 @@
 //! Publishing runs on a thread of its own, as for a server; set-points wait in the same queue, the last of each variable,
 //! until the owner's next step, which takes them.
 
+use super::closing::{Leaving, OpenSession};
 use super::desk::{Aside, Desk, Entrances};
-use super::press::Press;
+use super::press::{Press, QUEUE_OF_GAUGES};
 use super::replies::{ended, send_replies};
-use super::{ServeOptions, WAITING_REPLIES, failed, session, spawn};
+use super::{ServeOptions, WAITING_REPLIES, session, spawn};
 use crate::bus::Protocol;
 use crate::bus::advice::Advice;
 use crate::bus::error::BusError;
@@ -30,11 +31,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::sync_channel;
 use std::thread::JoinHandle;
-use zenoh::{Session, Wait as _};
 
 /// A component on the network beside its owner.
 pub struct Beside {
-    session: Session,
+    session: OpenSession,
     reach: Reach,
     instance: String,
     publisher: Publisher,
@@ -79,7 +79,7 @@ impl Beside {
             particles_wanted.clone(),
             shared.clone(),
         );
-        let press = Press::new(session.clone(), &keys, particles_wanted)?;
+        let press = Press::new(session.clone(), &keys, particles_wanted, QUEUE_OF_GAUGES)?;
         let threads = vec![
             spawn("sandgate-publish", move || press.run(publications))?,
             spawn("sandgate-reply", move || send_replies(&replies, &last))?,
@@ -252,12 +252,9 @@ impl Beside {
         }
     }
 
-    /// Ends the session: nobody gets in any more, what waits is published, threads end. `other` hears what was asked since
-    /// the last call; set-points that still wait are refused.
-    ///
-    /// # Errors
-    /// [`BusError::Zenoh`].
-    pub fn close(mut self, other: &mut dyn Observer) -> Result<(), BusError> {
+    /// Nobody gets in any more, what waits is published, threads end; the session is to be closed. `other` hears what was
+    /// asked since the last call; set-points that still wait are refused.
+    pub fn leave(mut self, other: &mut dyn Observer) -> Leaving {
         drop(self.entrances);
         let mut both = Both(other, &mut self.publisher);
         for task in self.tasks.take_all() {
@@ -273,8 +270,7 @@ impl Beside {
             // A panic there was reported by the thread itself, and who waited was answered.
             let _ = thread.join();
         }
-        let closed = self.session.close().wait();
-        closed.map_err(failed("close the session"))
+        Leaving(self.session)
     }
 }
 

@@ -5,6 +5,7 @@
 //! query is answered exactly once, also when a thread panics or the server ends ([`Waiting`]).
 
 mod beside;
+mod closing;
 mod desk;
 mod outlet;
 mod press;
@@ -14,10 +15,12 @@ mod unsent;
 mod wanted;
 
 pub use self::beside::Beside;
+pub use self::closing::Leaving;
 pub use self::outlet::Outlet;
 
+use self::closing::OpenSession;
 use self::desk::{Desk, Entrances};
-use self::press::Press;
+use self::press::{OWN_QUEUE, Press};
 use self::replies::{ended, send_replies};
 use super::advice::Advice;
 use super::error::{BusError, words};
@@ -39,7 +42,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::sync_channel;
 use std::thread::JoinHandle;
-use zenoh::{Session, Wait as _};
 
 /// Replies that may wait to be sent.
 const WAITING_REPLIES: usize = 1024;
@@ -98,7 +100,7 @@ impl ZenohConfig {
 
 /// An open server.
 pub struct Server {
-    session: Session,
+    session: OpenSession,
     reach: Reach,
     component: Component,
     protocol: Protocol,
@@ -140,7 +142,7 @@ impl Server {
             particles_wanted.clone(),
             shared.clone(),
         );
-        let press = Press::new(session.clone(), &keys, particles_wanted)?;
+        let press = Press::new(session.clone(), &keys, particles_wanted, OWN_QUEUE)?;
         let threads = vec![
             spawn("sandgate-publish", move || press.run(publications))?,
             spawn("sandgate-reply", move || send_replies(&replies, &last))?,
@@ -175,13 +177,10 @@ impl Server {
         &self.reach
     }
 
-    /// Serves on the calling thread until `stop` is set or a client sends `terminate`. `observer` hears all traffic.
-    /// Gives the component back (its mode says whether it was terminated), and whether the session could be closed.
-    pub fn run(
-        mut self,
-        observer: &mut dyn Observer,
-        stop: &AtomicBool,
-    ) -> (Component, Result<(), BusError>) {
+    /// Serves on the calling thread until `stop` is set, until a client sends `terminate`, or until a while after `observer`,
+    /// who hears all traffic, could not go on. Gives the component back (its mode says whether it was terminated), and the
+    /// session, which is to be closed when nothing more important is left to do.
+    pub fn run(mut self, observer: &mut dyn Observer, stop: &AtomicBool) -> (Component, Leaving) {
         let mut stepper = Stepper {
             component: self.component,
             protocol: self.protocol,
@@ -200,8 +199,7 @@ impl Server {
             // A panic there was reported by the thread itself, and who waited was answered.
             let _ = thread.join();
         }
-        let closed = self.session.close().wait();
-        (component, closed.map_err(failed("close the session")))
+        (component, Leaving(self.session))
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Answers no request and takes no set-point; those who come late get the last value of each key.
 
+use super::closing::OpenSession;
 use super::replies::{encoding, find_last_values, nothing_at};
 use super::{ServeOptions, failed, session, spawn, unsent};
 use crate::bus::error::BusError;
@@ -15,10 +16,10 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
+use zenoh::Wait as _;
 use zenoh::pubsub::Publisher;
 use zenoh::qos::CongestionControl;
 use zenoh::query::{Query, Queryable};
-use zenoh::{Session, Wait as _};
 
 /// Queries for last values that may wait; more are answered with an error.
 const WAITING_QUERIES: usize = 256;
@@ -27,7 +28,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 /// An open session that publishes.
 pub struct Outlet {
-    session: Session,
+    session: OpenSession,
     reach: Reach,
     keys: Keys,
     publishers: HashMap<Arc<str>, Publisher<'static>>,
@@ -141,10 +142,11 @@ impl Outlet {
         unsent::wait_until_taken(stop)
     }
 
-    /// Ends the session.
+    /// Ends the session, within 3 s.
     ///
     /// # Errors
-    /// [`BusError::Zenoh`].
+    /// [`BusError::LeftOpen`], [`BusError::Zenoh`], [`BusError::Thread`]: all was published, and what is left open ends with
+    /// the process.
     pub fn close(mut self) -> Result<(), BusError> {
         // Its callback holds the queue's only sender: without it the thread ends.
         drop(self.queryable.take());
@@ -153,10 +155,7 @@ impl Outlet {
             let _ = replying.join();
         }
         self.publishers.clear();
-        self.session
-            .close()
-            .wait()
-            .map_err(failed("close the session"))
+        self.session.close()
     }
 }
 

@@ -3,7 +3,7 @@
 //! and the others get all. Its connection stays open.
 //!
 //! Publications have queues of their own in Zenoh, below those of replies: a reply does not wait behind what its client does
-//! not take, and gauges do not wait behind particles.
+//! not take, and gauges of a server do not wait behind particles.
 
 use super::failed;
 use super::replies::encoding;
@@ -18,6 +18,14 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::{Session, Wait as _};
 
+/// The queue for particles, in which they are not in the way of gauges. Where the process ends with the session: Zenoh's last
+/// message to each peer has the same queue, and is waited for without end where that is full (`closing`).
+pub(super) const OWN_QUEUE: Priority = Priority::Background;
+
+/// The queue of gauges. A process that goes on after the session has particles there, too: what Zenoh leaves behind when it
+/// cannot close a connection is the one thread that sends, for all sessions to come.
+pub(super) const QUEUE_OF_GAUGES: Priority = Priority::DataLow;
+
 /// Publishers by key.
 pub(super) struct Press {
     session: Session,
@@ -29,13 +37,14 @@ impl Press {
         session: Session,
         keys: &Keys,
         wanted: Arc<AtomicBool>,
+        queue_of_particles: Priority,
     ) -> Result<Self, BusError> {
         // Particles are large, and made only for somebody.
         let key: Arc<str> = topics::particles(keys.base()).into();
         let particles = session
             .declare_publisher(key.to_string())
             .congestion_control(CongestionControl::Drop)
-            .priority(Priority::Background)
+            .priority(queue_of_particles)
             .wait()
             .map_err(failed("publish particles"))?;
         particles
@@ -64,7 +73,7 @@ impl Press {
                 .session
                 .declare_publisher(publication.key.to_string())
                 .congestion_control(CongestionControl::Drop)
-                .priority(Priority::DataLow)
+                .priority(QUEUE_OF_GAUGES)
                 .wait();
             // Fails only once the session is closed; then there is nobody to publish to.
             if let Ok(publisher) = declared {

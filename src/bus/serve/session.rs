@@ -1,5 +1,6 @@
 //! The session: opened in the role in which others find it, and asked whether its name is taken.
 
+use super::closing::OpenSession;
 use super::wanted::{self, Wanted, as_json, insert};
 use super::{ServeOptions, failed};
 use crate::bus::advice::Advice;
@@ -27,7 +28,7 @@ const PORT_ATTEMPTS: usize = 8;
 pub(super) fn open(
     options: &ServeOptions,
     alone: Option<&Keys>,
-) -> Result<(Session, Reach), BusError> {
+) -> Result<(OpenSession, Reach), BusError> {
     let wanted = wanted::configure(options)?;
     let may_be_client = match wanted.mode.as_deref() {
         None => wanted.listen.is_empty() && wanted.connect.len() == 1,
@@ -61,12 +62,12 @@ pub(super) fn open(
 }
 
 impl Wanted {
-    fn client_of(&self, connect: &[String]) -> Result<Session, BusError> {
+    fn client_of(&self, connect: &[String]) -> Result<OpenSession, BusError> {
         let mut config = self.config.clone();
         insert(&mut config, "mode", "\"client\"")?;
         insert(&mut config, "listen/endpoints", "[]")?;
         insert(&mut config, "connect/endpoints", &as_json(connect))?;
-        let opened = zenoh::open(config).wait();
+        let opened = zenoh::open(config).wait().map(OpenSession::new);
         opened.map_err(|error| BusError::Zenoh {
             doing: format!("connect to {}", connect.join(", ")),
             reason: words(error),
@@ -84,14 +85,14 @@ impl Wanted {
             (peers, routers) = (peers || !is_router, routers || is_router);
             let answer = alone.map_or(Ok(()), |keys| refuse_twin(&session, keys, self.advice));
             // It has served; what is left of it ends with the process at the latest.
-            let _ = session.close().wait();
+            let _ = session.close();
             answer?;
         }
         Ok(peers && !routers)
     }
 
     /// As a peer or router that others may connect to, and that looks for whom it shall connect to until they are there.
-    fn listening(self, mode: &str, looking: bool) -> Result<(Session, Reach), BusError> {
+    fn listening(self, mode: &str, looking: bool) -> Result<(OpenSession, Reach), BusError> {
         let mode = self.mode.as_deref().unwrap_or(mode);
         let mut config = self.config;
         insert(&mut config, "mode", &Value::from(mode).to_string())?;
@@ -115,7 +116,7 @@ fn with_real_ports(
     mut config: Config,
     wanted: &[String],
     advice: Advice,
-) -> Result<(Session, Vec<String>), BusError> {
+) -> Result<(OpenSession, Vec<String>), BusError> {
     let mut attempt = 1;
     loop {
         let listeners: Vec<String> = wanted
@@ -124,7 +125,7 @@ fn with_real_ports(
             .collect::<Result<_, _>>()?;
         insert(&mut config, "listen/endpoints", &as_json(&listeners))?;
         match zenoh::open(config.clone()).wait() {
-            Ok(session) => return Ok((session, listeners)),
+            Ok(session) => return Ok((OpenSession::new(session), listeners)),
             Err(error) => {
                 // Zenoh does not say which step of opening failed.
                 let bound = listeners.iter().try_for_each(|l| endpoints::check_port(l));

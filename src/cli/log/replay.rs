@@ -143,7 +143,10 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             "warning: subscribers have not taken the last {left} bytes and more of it, which are lost to them"
         );
     }
-    Ok(player.outlet.close()?)
+    if let Err(open) = player.outlet.close() {
+        tell!("warning: {open}");
+    }
+    Ok(())
 }
 
 /// What viewers need of the time before the first message: the newest scene, and the newest place of each frame.
