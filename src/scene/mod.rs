@@ -12,6 +12,8 @@ mod gates;
 mod ghosts;
 mod lift;
 mod load;
+mod load_axes;
+mod piles;
 mod quality;
 mod raw;
 mod reference;

@@ -4,13 +4,10 @@
 //! Places under a roof take the pressure that balances them with their neighbours, sum_j [p_i - p_j - rho g (z_j - z_i)] = 0 with rho the mean of
 //! both, between the open places, which have that of their depth. Between two tanks of other levels it falls evenly along the way.
 
-use super::load::{Loads, TOUCH, periods};
+use super::load::Loads;
+use super::piles::{TOUCH, periods};
 use crate::shape::Lattice;
 use crate::state::CellGrid;
-
-/// How near a wall point lies to half a spacing above a fluid's top where that is a roof, over the spacing [1]: a row of points half a
-/// spacing behind the roof is as near whatever its phase, a wall beside the top is not.
-const ROOF: f64 = 0.75;
 
 /// What the balance may be off by, over the largest pressure [1].
 const BALANCED: f64 = 1e-9;
@@ -28,12 +25,11 @@ struct Place<const D: usize> {
 
 /// Pressures of the places of each body that lie under a roof and are joined to open fluid [Pa]; none for the others.
 pub(super) fn pressures_under_roofs<const D: usize>(
-    loads: &Loads<'_>,
+    loads: &Loads<'_, D>,
     lattices: &[Lattice],
-    walls: &[[f64; D]],
 ) -> Vec<Vec<Option<f64>>> {
     let mut found: Vec<Vec<Option<f64>>> = vec![Vec::new(); lattices.len()];
-    let places = roofed_places(loads, lattices, walls);
+    let places = roofed_places(loads, lattices);
     let Some((mut places, roofed)) = places else {
         return found;
     };
@@ -53,20 +49,17 @@ pub(super) fn pressures_under_roofs<const D: usize>(
 
 /// The places of all fluids, and which of them lie under a roof; `None` where none does.
 fn roofed_places<const D: usize>(
-    loads: &Loads<'_>,
+    loads: &Loads<'_, D>,
     lattices: &[Lattice],
-    walls: &[[f64; D]],
 ) -> Option<(Vec<Place<D>>, Vec<bool>)> {
     let scene = loads.scene();
     let is_fluid = |body: usize| {
         let material = scene.bodies[body].material;
         scene.materials[material].material.is_fluid()
     };
-    if walls.is_empty() || !(0..lattices.len()).any(is_fluid) {
+    if !loads.has_walls() || !(0..lattices.len()).any(is_fluid) {
         return None;
     }
-    let dp = scene.numerics.spacing;
-    let cells = CellGrid::build(walls, ROOF * dp, &periods(loads.scene()));
     let mut places = Vec::new();
     let mut roofed = Vec::new();
     for body in (0..lattices.len()).filter(|b| is_fluid(*b)) {
@@ -74,11 +67,7 @@ fn roofed_places<const D: usize>(
             .material
             .rest_density();
         for (number, point) in lattices[body].points.iter().enumerate() {
-            let mut above: [f64; D] = std::array::from_fn(|k| point[k]);
-            above[loads.up()] += loads.direction() * (loads.top_above(body, point) + 0.5 * dp);
-            let mut has_roof = false;
-            cells.for_each_within(&above, ROOF * dp, |_, _, _| has_roof = true);
-            roofed.push(has_roof);
+            roofed.push(loads.under_roof(body, point));
             places.push(Place {
                 body,
                 number,
@@ -93,7 +82,7 @@ fn roofed_places<const D: usize>(
 
 /// The places that touch each one under a roof.
 fn neighbours<const D: usize>(
-    loads: &Loads<'_>,
+    loads: &Loads<'_, D>,
     places: &[Place<D>],
     roofed: &[bool],
 ) -> Vec<Vec<u32>> {
@@ -130,7 +119,7 @@ fn joined(roofed: &[bool], neighbours: &[Vec<u32>]) -> Vec<bool> {
 
 /// Balances the places that are `joined`: conjugate gradients with the number of neighbours as preconditioner.
 fn balance<const D: usize>(
-    loads: &Loads<'_>,
+    loads: &Loads<'_, D>,
     places: &mut [Place<D>],
     joined: &[bool],
     neighbours: &[Vec<u32>],
@@ -140,8 +129,7 @@ fn balance<const D: usize>(
         |d: &[f64], i: usize| -> f64 { neighbours[i].iter().map(|&j| d[i] - d[j as usize]).sum() };
     let weight = |i: usize, j: u32| {
         let (a, b) = (&places[i], &places[j as usize]);
-        let higher = loads.direction() * (b.x[loads.up()] - a.x[loads.up()]);
-        0.5 * (a.density + b.density) * loads.gravity() * higher
+        loads.head(0.5 * (a.density + b.density), &b.x, &a.x)
     };
     let mut pressure: Vec<f64> = places.iter().map(|p| p.pressure).collect();
     let mut residual = vec![0.0; places.len()];

@@ -17,6 +17,7 @@ use crate::state::State;
 
 use super::elements::elements;
 use super::ghosts::ghost_depth;
+use super::load_axes::asks_for_walls;
 use super::{Dimension, Point, Scene};
 use inflows::source;
 use joins::{Standing, join_boxes};
@@ -101,10 +102,10 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     Ok((plan, state))
 }
 
-/// Points of walls and gates that may be roofs of fluids at the start.
+/// Points of walls and gates at which the way up may end at the start: roofs of fluids, and where several ways lead up.
 fn roofs<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<Vector<D>> {
     let has_fluids = scene.materials.iter().any(|m| m.material.is_fluid());
-    if !has_fluids || scene.numerics.scheme != Scheme::Implicit {
+    if !(has_fluids || asks_for_walls(scene)) || scene.numerics.scheme != Scheme::Implicit {
         return Vec::new();
     }
     let openings: Vec<f64> = scene.gates.iter().map(|g| g.start).collect();
