@@ -23,6 +23,8 @@ pub(super) struct Space<'a> {
     /// Against gravity's main axis.
     pub(super) up: Point,
     pub(super) axes: usize,
+    /// Particle spacing, none where the scene gives none [m].
+    pub(super) spacing: Option<f64>,
 }
 
 /// The values of the i-th body, whose shape is `shape` (none where the scene could not be read).
@@ -66,17 +68,15 @@ pub(super) fn list(
         }
     }
     let given = raw.level.as_ref().map(|level| level.value.0);
-    let full = shape.filter(|shape| !matches!(shape, Shape::Box { .. }));
-    let full = full.map(|shape| heights(shape.bounds(), space.up).1);
-    if let Some(start) = given.or(full) {
+    // Corners of boxes move.
+    let own = shape.filter(|shape| !matches!(shape, Shape::Box { .. }));
+    let own = own.map(|shape| heights(shape.bounds(), space.up));
+    if let Some(start) = given.or(own.map(|(_, top)| top)) {
         let text = format!("height up to which body {name} is filled");
-        add(
-            "level",
-            text,
-            BodyKey::Level,
-            start,
-            heights((lower, upper), space.up),
-        );
+        // Less than a spacing would be no body.
+        let lift = |(foot, top)| (foot + space.spacing.unwrap_or(0.0), top);
+        let range = own.map_or(heights((lower, upper), space.up), lift);
+        add("level", text, BodyKey::Level, start, range);
     }
 }
 

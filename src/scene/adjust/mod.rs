@@ -107,17 +107,16 @@ pub(super) fn adjustables(
     for (i, (name, material)) in sections(raw.materials.as_ref()).enumerate() {
         materials::list(i, name, material, &mut list);
     }
+    let numerics = raw.numerics.as_ref().map(|n| &n.value);
+    let space = bodies::Space {
+        domain,
+        up: up(domain.gravity, dimension),
+        axes,
+        spacing: numerics.and_then(|n| Some(n.spacing.as_ref()?.value.0)),
+    };
     for (i, (name, body)) in sections(raw.bodies.as_ref()).enumerate() {
-        let up = up(domain.gravity, dimension);
         let shape = lifted.iter().find(|b| b.name == name).map(|b| &b.shape);
-        bodies::list(
-            i,
-            name,
-            body,
-            shape,
-            &bodies::Space { domain, up, axes },
-            &mut list,
-        );
+        bodies::list(i, name, body, shape, &space, &mut list);
     }
     for (i, (name, wall)) in sections(raw.walls.as_ref()).enumerate() {
         list.extend(walls::friction(i, name, wall));
@@ -294,6 +293,9 @@ mod tests {
             .find(|a| a.name.ends_with(".level"));
         let row = row.expect("a polygon can be filled less");
         assert_eq!(row.start, 0.04);
+        // What is within the range is a scene.
+        assert_eq!(row.range, (scene.numerics.spacing, 0.04));
+        assert!(with(&scene, &[(&row.name, row.range.0)]).is_ok());
         let lower = with(&scene, &[(&row.name, 0.02)]).expect("a scene");
         assert_eq!(lower.bodies[0].level, Some(0.02));
         let over = with(&scene, &[(&row.name, 0.05)]).expect_err("higher than the shape");
