@@ -450,6 +450,26 @@ fn info_tells_what_a_case_holds_costs_and_leaves_out() {
     }
 }
 
+/// Particles that jitter put beyond a round or slanted rim belong to their body, too.
+#[test]
+fn info_counts_the_particles_of_a_body_as_they_were_made() {
+    let desk = Desk::new();
+    let text = std::fs::read_to_string(small_silo()).unwrap();
+    let of = text.find("box = ").expect("its body is a box");
+    let line = text[of..].lines().next().expect("a line");
+    let round = "circle = { centre = [\"40 mm\", \"40 mm\"], radius = \"30 mm\" }";
+    let path = desk.path("disc.toml");
+    std::fs::write(&path, text.replace(line, round)).unwrap();
+    let told = desk.ok(&["info", path.to_str().unwrap()]);
+    let number = |key: &str| -> usize {
+        let rest = told.split(key).nth(1).unwrap_or_else(|| panic!("{told}"));
+        let word = rest.split_whitespace().next();
+        word.and_then(|w| w.parse().ok())
+            .unwrap_or_else(|| panic!("{told}"))
+    };
+    assert_eq!(number("body     fill:"), number("particles  "));
+}
+
 #[test]
 fn info_tells_of_a_gate_that_is_held_below_its_speed() {
     let desk = Desk::new();

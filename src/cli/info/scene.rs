@@ -4,12 +4,10 @@ use crate::cli::remarks::remarks;
 use crate::component::{Component, StaysAwake};
 use crate::material::{Law, Material, MuI};
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
-use crate::shape::Shape;
 use crate::solver::Scheme;
 
 /// Particles, walls, devices, gauges and what is not used.
 pub(super) fn describe(scene: &Scene, component: &Component) -> String {
-    let view = component.particles();
     let mut text = format!("{}: {}\n", scene.name, scene.title);
     let width = match scene.dimension {
         Dimension::Two => format!("planar, {} m wide", scene.domain.width),
@@ -18,19 +16,16 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
     };
     text.push_str(&format!(
         "particles  {} of spacing {} m, {width}; mass {} kg; {} wall and gate particles\n",
-        view.position.len(),
+        component.statistics().particles,
         scene.numerics.spacing,
         component.ledger().initial,
         component.wall_points().len(),
     ));
     text.push_str(&format!("quality    {}\n", quality(scene)));
-    for body in &scene.bodies {
-        let inside = |p: &&[f32; 3]| contains(&body.shape, p.map(f64::from));
+    for (body, count) in scene.bodies.iter().zip(scene.body_particles()) {
         text.push_str(&format!(
-            "  body     {}: {} particles of {}\n",
-            body.name,
-            view.position.iter().filter(inside).count(),
-            scene.materials[body.material].name,
+            "  body     {}: {count} particles of {}\n",
+            body.name, scene.materials[body.material].name,
         ));
     }
     for named in &scene.materials {
@@ -299,34 +294,5 @@ fn left_out(scene: &Scene) -> Vec<&'static str> {
         vec!["nothing"]
     } else {
         list
-    }
-}
-
-/// Whether a point lies in a shape.
-fn contains(shape: &Shape, [x, y, z]: [f64; 3]) -> bool {
-    match shape {
-        Shape::Box { lower, upper } => {
-            let within = |axis: usize, v: f64| lower[axis] <= v && v <= upper[axis];
-            // The third axis of a planar box has no extent and holds every point.
-            within(0, x) && within(1, y) && (lower[2] >= upper[2] || within(2, z))
-        }
-        Shape::Polygon { points } => {
-            // Crossings of a ray towards +x: an odd number means inside.
-            let next = points.iter().cycle().skip(1);
-            let crossings = points.iter().zip(next).filter(|(a, b)| {
-                (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-            });
-            crossings.count() % 2 == 1
-        }
-        Shape::Column {
-            base,
-            radius,
-            height,
-            quarter,
-        } => {
-            (!quarter || (x >= base[0] && y >= base[1]))
-                && (x - base[0]).hypot(y - base[1]) <= *radius
-                && (0.0..=*height).contains(&(z - base[2]))
-        }
     }
 }

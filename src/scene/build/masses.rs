@@ -1,4 +1,4 @@
-//! What bodies weigh as particles, beside what their shapes would.
+//! What bodies are and weigh as particles, beside what their shapes would.
 
 use super::particles::{bulk_density, lattices, particle_mass};
 use crate::scene::{Dimension, Scene};
@@ -23,6 +23,15 @@ impl Scene {
             Dimension::Two | Dimension::Axisymmetric => masses::<2>(self),
             Dimension::Three => masses::<3>(self),
         }
+    }
+
+    /// Particles that each body starts as; they stand in the bodies' order.
+    pub(crate) fn body_particles(&self) -> Vec<usize> {
+        let lattices = match self.dimension {
+            Dimension::Two | Dimension::Axisymmetric => lattices::<2>(self),
+            Dimension::Three => lattices::<3>(self),
+        };
+        lattices.iter().map(|l| l.points.len()).collect()
     }
 }
 
