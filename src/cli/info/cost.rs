@@ -88,6 +88,12 @@ pub(super) fn report(scene: &Scene, m: &Measured, threads: usize) -> String {
     let mean = m.simulated / steps;
     let expected = scene.run.until / mean;
     let factor = scene.run.until / m.simulated;
+    // A gate at rest says little of the steps that it takes once it lets material go.
+    let more = if scene.gates.is_empty() && scene.inflows.is_empty() {
+        ""
+    } else {
+        " (more once gates or inflows move what rests: what flows takes smaller steps)"
+    };
     let mut text = format!(
         "step       acoustic bound courant h / c0 = {acoustic:.3e} s{times}; {}communication step {} s\n",
         match numerics.scheme {
@@ -103,7 +109,7 @@ pub(super) fn report(scene: &Scene, m: &Measured, threads: usize) -> String {
         m.steps, m.simulated, m.smallest_step, m.bound_by, m.iterations as f64 / steps,
     ));
     text.push_str(&format!(
-        "expected   {} s simulated = {} communication steps, about {expected:.0} internal steps\n",
+        "expected   {} s simulated = {} communication steps, about {expected:.0} internal steps{more}\n",
         scene.run.until,
         (scene.run.until / scene.run.step).ceil(),
     ));
