@@ -229,11 +229,19 @@ fn speed(args: &Speed) -> Result<(), CliError> {
     let mut lines: Vec<String> = Vec::new();
     for demand in page::demands(&run) {
         lines.push(demand.what.to_owned());
-        let verdict = demand.verdict().replace('*', "");
+        let verdict = match run.quick {
+            true => String::new(),
+            false => format!("; {}", demand.verdict().replace('*', "")),
+        };
         lines.push(format!(
-            "    {}   (asked: {}; {verdict})",
+            "    {}   (asked: {}{verdict})",
             demand.measured, demand.asked
         ));
+    }
+    if run.quick {
+        lines.push(
+            "small sizes and short stretches (--quick): nothing of this is judged".to_owned(),
+        );
     }
     lines.push(format!("run in {}", kept.display()));
     if let Some(page) = &args.page {

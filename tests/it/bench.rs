@@ -36,6 +36,10 @@ fn a_quick_run_is_kept_and_makes_its_page() {
     for demand in page::demands(&run) {
         assert!(out.contains(demand.what) && text.contains(&demand.measured));
     }
+    assert!(out.contains("nothing of this is judged"), "{out}");
+    let verdicts = ["not met", "; met", "| met", "verdict"];
+    let judged = |text: &str| verdicts.iter().any(|word| text.contains(word));
+    assert!(!judged(&out) && !judged(&text), "{out}{text}");
     let no_number = ["NaN", "inf "];
     assert!(no_number.iter().all(|word| !text.contains(word)), "{text}");
     for kernels in &run.kernels {
