@@ -34,7 +34,7 @@ pub(super) struct Args {
     /// Threads of each run, for runs one after the other; 0 means all cores. Results do not depend on it; CPU times are those of all threads
     #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "jobs", value_parser = clap::value_parser!(u16).range(0..=256))]
     threads: u16,
-    /// Coarser and fewer runs that take a minute: to see that all works, not to judge
+    /// Coarser and fewer runs that take some minutes in all: to see that all works, not to judge
     #[arg(long)]
     quick: bool,
     /// Run nothing; write the pages from what is finished
