@@ -14,13 +14,13 @@ use std::io::Read;
 /// First bytes of every saved state.
 const MARK: &[u8; 8] = b"SANDGATE";
 /// Counts up whenever the payload's layout changes; other versions are refused, never guessed.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 /// Bytes before the checksum.
 const PREFIX: usize = 8 + 4 + 32 + 8;
 /// Bytes before the payload.
 const HEADER: usize = PREFIX + 32;
 /// Bytes of a particle in space that keeps all that can be kept; a test counts them.
-const PARTICLE: u64 = 362;
+const PARTICLE: u64 = 370;
 /// Largest payload [bytes]: twice the particles that a scene may begin with, as inflows bring more. A damaged length
 /// claims no more than that.
 const MOST: u64 = 2 * MOST_PARTICLES as u64 * PARTICLE;

@@ -5,12 +5,14 @@
 //! left, p - p_w >= 0, presses grain on grain: the effective pressure, which friction is made of ([B] section 2 has a
 //! column's weight in its place, its eq. 10).
 //!
-//! This file is the equation and its rows; `solve` solves it, `effective` is what is left to press grain on grain.
+//! This file is the equation and its rows; `solve` solves it, `effective` is what is left to press grain on grain,
+//! `follow` what a change of it does to material at rest.
 //!
 //! Symbols: k_ij = 2 V_i V_j |F|; sum_j k_ij (p_i - p_j - rho_w g.x_ij) = 0, x_ij = x_i - x_j; Dirichlet rows: p_j of fluids.
 
 mod air;
 mod effective;
+mod follow;
 mod solve;
 
 use crate::kernel::WendlandC2;

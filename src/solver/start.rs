@@ -152,6 +152,10 @@ impl<const D: usize> Solver<D> {
         if self.has_pores && self.numerics.scheme == Scheme::Implicit {
             self.sweep_kinematics(state);
             self.seep(state);
+            let grains = &mut state.grains;
+            grains
+                .relaxed_pore_pressure
+                .clone_from(&grains.pore_pressure);
         }
         self.derive(state);
     }

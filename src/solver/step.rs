@@ -63,6 +63,7 @@ impl<const D: usize> Solver<D> {
         if came || state.steps.is_multiple_of(self.numerics.seepage_interval) {
             self.seep(state);
         }
+        self.follow_pores(state, dt);
         self.respond(state);
         state.time += dt;
         state.steps += 1;

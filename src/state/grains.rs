@@ -13,7 +13,7 @@ pub struct Grains<const D: usize> {
     pub exact_yield: bool,
     /// Whether walls have Coulomb friction: `wall_traction` and `wall_slip` are kept.
     pub wall_friction: bool,
-    /// Whether a material is saturated: `pore_pressure` is kept.
+    /// Whether a material is saturated: pore pressures are kept.
     pub saturated: bool,
     /// Position x [m].
     #[serde(with = "flat")]
@@ -52,6 +52,8 @@ pub struct Grains<const D: usize> {
     pub wall_slip: Vec<Vector<D>>,
     /// Pore pressure of the last seepage solve, the next one's first guess [Pa]; empty without saturated material.
     pub pore_pressure: Vec<f64>,
+    /// Pore pressure relaxed in time, what the pressure of resting material follows [Pa]; empty without saturated material.
+    pub relaxed_pore_pressure: Vec<f64>,
     /// Position when the neighbour lists were built [m].
     #[serde(with = "flat")]
     pub listed: Vec<Vector<D>>,
@@ -78,6 +80,7 @@ macro_rules! for_each_field {
         $f(&mut $self.wall_traction, $($extra)*);
         $f(&mut $self.wall_slip, $($extra)*);
         $f(&mut $self.pore_pressure, $($extra)*);
+        $f(&mut $self.relaxed_pore_pressure, $($extra)*);
         $f(&mut $self.listed, $($extra)*);
         $f(&mut $self.id, $($extra)*);
         $f(&mut $self.phase, $($extra)*);
@@ -128,6 +131,7 @@ impl<const D: usize> Grains<D> {
         }
         if self.saturated {
             self.pore_pressure.push(0.0);
+            self.relaxed_pore_pressure.push(0.0);
         }
         self.listed.push(position);
         self.id.push(id);
@@ -191,11 +195,12 @@ impl<const D: usize> Grains<D> {
             && self.viscous_change.len() == kept(self.implicit)[0]
             && [self.stress.len(), self.plastic_rate.len()] == kept(self.exact_yield)
             && [self.wall_traction.len(), self.wall_slip.len()] == kept(self.wall_friction)
-            && self.pore_pressure.len() == kept(self.saturated)[0]
+            && [self.pore_pressure.len(), self.relaxed_pore_pressure.len()] == kept(self.saturated)
             && self.phase.iter().all(|&p| usize::from(p) < phases)
             && self
                 .pore_pressure
                 .iter()
+                .chain(&self.relaxed_pore_pressure)
                 .chain(&self.relaxed_shear)
                 .all(|p| p.is_finite())
             && self
