@@ -196,6 +196,24 @@ impl<const D: usize> Plate<D> {
                 .is_none_or(|(u, width)| (0.0..width).contains(&dot(&d, &u)))
     }
 
+    /// Whether `x` is in the opening, between the edge and what it shuts on, and between the plate's faces.
+    #[must_use]
+    pub fn shuts_on(&self, x: &Vector<D>, opening: f64, spacing: f64) -> bool {
+        self.stopped_by(x, opening, spacing, self.gap(opening) / spacing)
+    }
+
+    /// Length of the opening [m].
+    #[must_use]
+    pub fn gap(&self, opening: f64) -> f64 {
+        opening * self.length
+    }
+
+    /// Depth of the opening from face to face [m].
+    #[must_use]
+    pub fn thickness(&self) -> f64 {
+        self.thickness
+    }
+
     /// Number of pieces of the leading edge, each about a spacing long; 1 in the plane, where it is a point.
     #[must_use]
     pub fn pieces(&self, spacing: f64) -> usize {

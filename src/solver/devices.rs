@@ -72,7 +72,11 @@ impl<const D: usize> Solver<D> {
             let plate = &self.plates[g];
             let gate = state.gates[g];
             let most = (plate.max_speed * dt).min(MOST_OF_A_PLATE * self.kernel.h) / plate.length;
-            let change = (wanted[g] - gate.opening).clamp(-most, most);
+            let mut change = (wanted[g] - gate.opening).clamp(-most, most);
+            if change < 0.0 {
+                let shutting = self.shutting_speed(state, g);
+                change = change.max(-shutting * dt / plate.length);
+            }
             let mut rate = change / dt;
             let blocked = change < 0.0 && self.is_blocked(state, g);
             if blocked {
@@ -90,6 +94,22 @@ impl<const D: usize> Solver<D> {
         }
     }
 
+    /// Most speed V of a plate that closes [m/s]: grains in an opening of width w and depth L are pressed out of it at V L/w, and no
+    /// faster than they fall through it by their weight, sqrt(g L). Faster plates shot single ones out at several times their own speed.
+    fn shutting_speed(&self, state: &State<D>, gate: usize) -> f64 {
+        let (plate, opening) = (&self.plates[gate], state.gates[gate].opening);
+        let spacing = self.numerics.spacing;
+        let gap = plate.gap(opening);
+        let caught = |x: &Vector<D>| plate.shuts_on(x, opening, spacing);
+        let speed = gap.max(TOUCH * spacing) * (self.gravity_norm / plate.thickness()).sqrt();
+        let is_slow = speed < plate.max_speed && speed > 0.0;
+        if is_slow && self.stiff(state).any(caught) {
+            speed
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// Whether grains stand against the leading edge of a plate that wants to close, along a share [`HELD`] of it in space: fewer are
     /// pushed aside, and so are fluids that flow, of which one drop at the lip held a gate as long as it stood there.
     fn is_blocked(&self, state: &State<D>, gate: usize) -> bool {
@@ -104,13 +124,19 @@ impl<const D: usize> Solver<D> {
         });
         let spacing = self.numerics.spacing;
         let mut held = vec![false; plate.pieces(spacing)];
-        for (x, phase) in state.grains.position.iter().zip(&state.grains.phase) {
-            if stops(x) && !self.materials[*phase as usize].flows() {
-                held[plate.piece_of(x, spacing)] = true;
-            }
+        for x in self.stiff(state).filter(|x| stops(x)) {
+            held[plate.piece_of(x, spacing)] = true;
         }
         let share = held.iter().filter(|h| **h).count() as f64 / held.len() as f64;
         share >= HELD || pushed.any(|i| state.grains.position.get(i).is_some_and(squeezed))
+    }
+
+    /// Places of what a plate does not just push aside: all but fluids that flow.
+    fn stiff<'a>(&'a self, state: &'a State<D>) -> impl Iterator<Item = &'a Vector<D>> {
+        let grains = &state.grains;
+        let places = grains.position.iter().zip(&grains.phase);
+        let stands = |phase: u8| !self.materials[phase as usize].flows();
+        places.filter_map(move |(x, phase)| stands(*phase).then_some(x))
     }
 
     /// Counts and marks what has entered a sink; removal waits for the next lists.
