@@ -23,6 +23,8 @@ pub(super) struct Push<const D: usize> {
     pub normal: Vector<D>,
     /// From the particle to the point [m].
     pub to: Vector<D>,
+    /// The point's part of the sum that the particle's pressure is multiplied with, V_i w F x, as it counts.
+    pub reach: Vector<D>,
     /// On the particle, by the point [N s].
     pub impulse: Vector<D>,
 }
@@ -43,12 +45,6 @@ impl<const D: usize> Face<D> {
 
 /// Hands on what points behind two faces bear to the walls that it belongs to. What one particle pushes stays the same in sum.
 pub(super) fn part_at_corners<const D: usize>(pushes: &mut Vec<Push<D>>, spacing: f64) {
-    let Some(first) = pushes.first() else {
-        return;
-    };
-    if pushes.iter().all(|p| p.group == first.group) {
-        return;
-    }
     let faces = faces(pushes);
     let shares = shares(&faces, pushes, spacing);
     for n in 0..pushes.len() {
@@ -170,6 +166,7 @@ mod tests {
                 group,
                 normal,
                 to,
+                reach: impulse,
                 impulse,
             }
         };

@@ -7,6 +7,7 @@ use crate::state::State;
 use super::Solver;
 use super::corners::{Push, part_at_corners};
 use super::pair::WallRow;
+use super::seams::{OF_FLUIDS, share_at_seams};
 
 /// What is the same for all points that a particle sees.
 struct Pushing<'a, const D: usize> {
@@ -17,6 +18,18 @@ struct Pushing<'a, const D: usize> {
     /// What (W4) carries on [N/m^2].
     leant: Vector<D>,
     dt: f64,
+}
+
+/// A wall point as the sums of a particle have it.
+struct Reach<const D: usize> {
+    /// V_i w F x, its part of the sum that stress is multiplied with.
+    g: Vector<D>,
+    /// The same for pressure: nothing along a flat face that rubs.
+    of_pressure: Vector<D>,
+    /// Normal of a face with free slip.
+    projection: Option<Vector<D>>,
+    /// eta c of the pair form.
+    c: f64,
 }
 
 impl<const D: usize> Solver<D> {
@@ -43,9 +56,7 @@ impl<const D: usize> Solver<D> {
                 let pushing = self.pushing(state, (b * CHUNK + row, seen), dt);
                 let in_solve = self.push_points(state, &pushing, near, &mut pushes);
                 left = add(&left, &in_solve);
-                if self.material_of(state, b * CHUNK + row).is_fluid() {
-                    part_at_corners(&mut pushes, self.numerics.spacing);
-                }
+                self.part_among_walls(state, pushing.i, dt, &mut pushes);
                 for push in &pushes {
                     let borne = &mut borne[push.group as usize];
                     *borne = add(borne, &push.impulse);
@@ -69,6 +80,45 @@ impl<const D: usize> Solver<D> {
                 state.impulse[n][k] -= borne[k] - share * left[k];
             }
         }
+    }
+
+    /// Hands pushes of particle i on, where several walls have a part in them, to those that bear them.
+    fn part_among_walls(&self, state: &State<D>, i: usize, dt: f64, pushes: &mut Vec<Push<D>>) {
+        let Some(first) = pushes.first() else {
+            return;
+        };
+        if pushes.iter().all(|p| p.group == first.group) {
+            return;
+        }
+        let spacing = self.numerics.spacing;
+        let is_fluid = self.material_of(state, i).is_fluid();
+        let by_stress = self.by_stress(i, dt);
+        let sticks = |p: &Push<D>| !self.walls.groups[p.group as usize].free_slip;
+        let sheared = !is_fluid && pushes.iter().all(sticks);
+        let push = |g: &Vector<D>| {
+            let pressed = self.pressure_push(i, g);
+            let stress = scale(2.0, &apply(&self.viscous.stress(i), g));
+            let whole = if sheared {
+                add(&pressed, &stress)
+            } else {
+                pressed
+            };
+            scale(by_stress, &whole)
+        };
+        share_at_seams(
+            pushes,
+            push,
+            if is_fluid { OF_FLUIDS } else { 1.0 },
+            spacing,
+        );
+        if is_fluid {
+            part_at_corners(pushes, spacing);
+        }
+    }
+
+    /// Impulse over a push over a particle's volume [m^3 s].
+    fn by_stress(&self, i: usize, dt: f64) -> f64 {
+        dt * self.width * self.volume[i]
     }
 
     fn pushing<'a>(
@@ -104,14 +154,16 @@ impl<const D: usize> Solver<D> {
         let i = pushing.i;
         let xi = &state.grains.position[i];
         let support = self.kernel.support();
-        let by_stress = pushing.dt * self.width * self.volume[i];
+        let by_stress = self.by_stress(i, pushing.dt);
         let mut in_solve = [0.0; D];
         for &w in near {
             let (x, r) = self.wall_offset(xi, w);
             if self.walls.weight[w as usize] == 0.0 || r >= support || r == 0.0 {
                 continue;
             }
-            let (pressure, stress) = self.stress_push(state, pushing, w, (&x, r));
+            let reach = self.reach(state, pushing, w, (&x, r));
+            let pressure = self.pressure_push(i, &reach.of_pressure);
+            let stress = self.stress_push(i, w, &reach);
             let (leant, other) = self.other_push(state, pushing, w, (&x, r));
             let solved = add(&scale(by_stress, &stress), &leant);
             in_solve = add(&in_solve, &solved);
@@ -119,39 +171,55 @@ impl<const D: usize> Solver<D> {
                 group: self.walls.group[w as usize],
                 normal: self.wall_normal(xi, w, state),
                 to: scale(-1.0, &x),
+                reach: reach.of_pressure,
                 impulse: add(&add(&scale(by_stress, &pressure), &other), &solved),
             });
         }
         in_solve
     }
 
-    /// On the particle, over its volume: of pressure, -2 p g, and of stress, 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w).
-    fn stress_push(
+    /// A point as the sums of a particle have it.
+    fn reach(
         &self,
         state: &State<D>,
         pushing: &Pushing<D>,
         w: u32,
         (x, r): (&Vector<D>, f64),
-    ) -> (Vector<D>, Vector<D>) {
-        let i = pushing.i;
-        let xi = &state.grains.position[i];
-        let vf = self.wall_volume(i, w, self.walls.weight[w as usize]) * self.kernel.f(r);
+    ) -> Reach<D> {
+        let vf = self.wall_volume(pushing.i, w, self.walls.weight[w as usize]) * self.kernel.f(r);
         let g = scale(vf, x);
-        let projection = self.wall_projection(xi, w, state);
-        let seen = |a: Vector<D>| -> Vector<D> { projection.map_or(a, |n| scale(dot(&n, &a), &n)) };
+        let projection = self.wall_projection(&state.grains.position[pushing.i], w, state);
         let flat = pushing.seen.is_some_and(|w| w.flat);
-        let push = if flat { seen(g) } else { g };
-        let mut pressure = scale(-2.0 * self.mean_pressure(i), &push);
-        if let Some(uneven) = self.uneven_pressure.get(i) {
-            pressure = add(&pressure, &scale(2.0, &apply(uneven, &push)));
+        let of_pressure = match projection {
+            Some(n) if flat => scale(dot(&n, &g), &n),
+            _ => g,
+        };
+        Reach {
+            g,
+            of_pressure,
+            projection,
+            c: -self.pair_viscosity[pushing.i] * 2.0 * (D as f64 + 2.0) / (vf * r * r),
         }
-        let stress = scale(2.0, &seen(apply(&self.viscous.stress(i), &g)));
-        let pg = seen(g);
-        let dissipation = 2.0 * (D as f64 + 2.0);
-        let c = dissipation / (-vf * r * r) * self.pair_viscosity[i];
+    }
+
+    /// On particle i, over its volume, where its pressure is multiplied with g.
+    fn pressure_push(&self, i: usize, g: &Vector<D>) -> Vector<D> {
+        let even = scale(-2.0 * self.mean_pressure(i), g);
+        match self.uneven_pressure.get(i) {
+            Some(uneven) => add(&even, &scale(2.0, &apply(uneven, g))),
+            None => even,
+        }
+    }
+
+    /// On particle i, over its volume, of stress: 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w).
+    fn stress_push(&self, i: usize, w: u32, reach: &Reach<D>) -> Vector<D> {
+        let seen =
+            |a: Vector<D>| -> Vector<D> { reach.projection.map_or(a, |n| scale(dot(&n, &a), &n)) };
+        let stress = scale(2.0, &seen(apply(&self.viscous.stress(i), &reach.g)));
+        let pg = seen(reach.g);
         let against = sub(&self.viscous.velocity[i], &self.walls.velocity[w as usize]);
-        let drag = -2.0 * self.numerics.pair_viscosity_share * c * dot(&pg, &against);
-        (pressure, add(&stress, &scale(drag, &pg)))
+        let drag = -2.0 * self.numerics.pair_viscosity_share * reach.c * dot(&pg, &against);
+        add(&stress, &scale(drag, &pg))
     }
 
     /// Impulse on the particle of what is not a stress: each point's part of K (W4), as the solve has it, and of L (W7) and of (W5), as they were counted.

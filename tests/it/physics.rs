@@ -24,6 +24,7 @@ mod pores;
 mod rest;
 mod rheology;
 mod roofs;
+mod seams;
 mod silo;
 mod tension;
 mod turning;
