@@ -296,7 +296,7 @@ until = 1
         let lattices: Vec<_> = scene
             .bodies
             .iter()
-            .map(|b| crate::shape::lattice(&b.shape, None, 0.005, 2, false))
+            .map(|b| crate::shape::lattice(&b.shape, None, b.shape.bounds().0, 0.005, 2, false))
             .collect();
         let up = (0..2).find(|k| scene.up()[*k] != 0.0).unwrap();
         let loads = Loads::new(&scene, up, &lattices, walls);

@@ -16,7 +16,7 @@ pub struct Lattice {
 /// Fills a shape, below a level if given, "up" (an axis or its opposite) and the height along it, in `dimensions` 2 or 3.
 ///
 /// Boxes are filled exactly: their spacing is stretched to a whole number of rows an axis. Other shapes keep the
-/// spacing and take the places that lie inside.
+/// spacing and take the places that lie inside, of rows from `start` on.
 ///
 /// `staggered`: rows across the last axis are moved to and fro by a quarter of a spacing along the others. Rows of a square
 /// lattice under load stand on top of each other and slide into the gaps of their neighbours in the end; these lie there.
@@ -24,6 +24,7 @@ pub struct Lattice {
 pub fn lattice(
     shape: &Shape,
     level: Option<(Vector<3>, f64)>,
+    start: [f64; 3],
     spacing: f64,
     dimensions: usize,
     staggered: bool,
@@ -39,6 +40,12 @@ pub fn lattice(
         }
     }
     let exact = matches!(shape, Shape::Box { .. });
+    if !exact {
+        for k in 0..dimensions {
+            // Of rows below the level's nothing is left.
+            lower[k] = start[k];
+        }
+    }
     let mut count = [1usize; 3];
     let mut step = [0.0; 3];
     for k in 0..dimensions {

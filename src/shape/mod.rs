@@ -1,8 +1,10 @@
 //! Rank 1: regions to fill with material: inside tests, bounds, lattices. Points are `[x, y, z]`, z = 0 in planar scenes.
 
+mod align;
 mod fill;
 mod measure;
 
+pub use align::{Fill, lattices};
 pub use fill::{Lattice, lattice};
 pub use measure::cut_below;
 
@@ -120,7 +122,18 @@ mod tests {
             height: 0.3,
             quarter,
         };
-        let count = |quarter| lattice(&column(quarter), None, 0.05, 3, false).points.len();
+        let count = |quarter| {
+            lattice(
+                &column(quarter),
+                None,
+                column(quarter).bounds().0,
+                0.05,
+                3,
+                false,
+            )
+            .points
+            .len()
+        };
         assert_eq!(4 * count(true), count(false));
         assert_eq!(column(true).bounds().0, [1.0, 2.0, 0.0]);
         assert!(
@@ -135,7 +148,7 @@ mod tests {
             upper: [0.2, 0.1, 0.0],
         };
         for staggered in [false, true] {
-            let l = lattice(&shape, None, 0.0049, 2, staggered);
+            let l = lattice(&shape, None, shape.bounds().0, 0.0049, 2, staggered);
             assert!((l.cell_volume * l.points.len() as f64 - 0.02).abs() < 1e-15);
         }
     }
@@ -147,7 +160,14 @@ mod tests {
             upper: [0.0, 0.1, 0.0],
         };
         let filled = |up, level| {
-            let l = lattice(&square, Some((up, level)), 0.004, 2, false);
+            let l = lattice(
+                &square,
+                Some((up, level)),
+                square.bounds().0,
+                0.004,
+                2,
+                false,
+            );
             l.cell_volume * l.points.len() as f64
         };
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 0.03, "{a} for {b}");
@@ -163,7 +183,7 @@ mod tests {
                 lower: [0.0, lower, 0.0],
                 upper: [0.4, upper, 0.0],
             };
-            lattice(&shape, None, 0.1, 2, true).points
+            lattice(&shape, None, shape.bounds().0, 0.1, 2, true).points
         };
         let whole = places(-0.3, 0.2);
         let parts = [places(-0.3, -0.1), places(-0.1, 0.2)].concat();

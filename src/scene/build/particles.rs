@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::boundary::RigidMotion;
 use crate::math::{Vector, add};
-use crate::shape::{Lattice, lattice};
+use crate::shape::{Fill, Lattice};
 use crate::solver::{Scheme, three};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
@@ -154,13 +154,10 @@ pub(super) fn lattices<const D: usize>(scene: &Scene) -> Vec<Lattice> {
     // With the packing of the start (`solver/pack.rs`), which evens what it leaves uneven beside walls.
     let staggered =
         scene.numerics.jitter > 0.0 && !rings && scene.numerics.scheme == Scheme::Implicit;
+    let level = |body: &Body| body.level.map(|height| (scene.up(), height));
     let bodies = scene.bodies.iter();
-    bodies
-        .map(|body| {
-            let level = body.level.map(|height| (scene.up(), height));
-            lattice(&body.shape, level, scene.numerics.spacing, D, staggered)
-        })
-        .collect()
+    let fills: Vec<Fill> = bodies.map(|body| (&body.shape, level(body))).collect();
+    crate::shape::lattices(&fills, scene.numerics.spacing, D, staggered)
 }
 
 /// How far a particle may start from its place along an axis [m]. Rings of half a spacing move half as far: the mass is
