@@ -1,7 +1,7 @@
 //! How far a flow is from what its model holds for: shares of mass and the creep of what should rest. Computed when
 //! somebody asks, once a communication step.
 
-use crate::material::{Material, Rheology, ill_posedness};
+use crate::material::{Friction, Material, Rheology, ill_posedness};
 use crate::math::{dot, sub};
 use crate::state::State;
 
@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-9;
 pub struct Validity {
     /// Share with I > 0.3 [1].
     pub share_dilute: f64,
-    /// Share that yields where the friction law is ill-posed, C > 0 [1] (docs/theory.md, M6).
+    /// Share that yields where the friction law is ill-posed, C > 0, and bulk friction does not mend it [1] (docs/theory.md, M6).
     pub share_ill_posed: f64,
     /// Root mean square, by mass, of the shear rate of material whose shear stress is below its static strength [1/s]:
     /// 0 if all that should rest does.
@@ -36,6 +36,13 @@ pub struct Validity {
     pub share_fast: f64,
     /// Share of all material whose pressure is above a twentieth of rho c^2 [1].
     pub share_squeezed: f64,
+}
+
+/// Whether grains that yield at an inertial number have no well-posed equations: C > 0, unless bulk friction mends it (M6, M7).
+fn is_ill_posed(material: &Material, inertial_number: f64) -> bool {
+    let mu = material.law.friction(inertial_number);
+    let mended = material.bulk_friction > 1.0 - 7.0 * mu / 6.0;
+    !mended && ill_posedness(&material.law, inertial_number) > 0.0
 }
 
 impl<const D: usize> Solver<D> {
@@ -74,11 +81,11 @@ impl<const D: usize> Solver<D> {
                 dilute += m;
             }
             let shear = self.kinematics[i].shear;
-            let stress = (1.0 + ROUNDING) * self.viscosity[i] * shear;
-            if self.is_ill_posed(material, i, p, stress) {
+            let (yields, strong) = self.yields(state, (i, p), material);
+            if yields && is_ill_posed(material, self.inertial_number[i]) {
                 ill_posed += m;
             }
-            if stress < material.strength(p) {
+            if strong {
                 below += m;
                 creep += m * shear * shear;
             }
@@ -93,8 +100,16 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    fn is_ill_posed(&self, material: &Material, i: usize, p: f64, stress: f64) -> bool {
-        stress >= material.yield_stress(p)
-            && ill_posedness(&material.law, self.inertial_number[i]) > 0.0
+    /// Whether grains under a pressure p yield, and whether they should not, their stress being below the static strength.
+    fn yields(&self, state: &State<D>, (i, p): (usize, f64), material: &Material) -> (bool, bool) {
+        if state.grains.exact_yield {
+            let flows = self.geometry.size(&state.grains.plastic_rate[i]) > 0.0;
+            return (flows, !flows);
+        }
+        let stress = (1.0 + ROUNDING) * self.viscosity[i] * self.kinematics[i].shear;
+        (
+            stress >= material.yield_stress(p),
+            stress < material.strength(p),
+        )
     }
 }

@@ -113,3 +113,40 @@ fn what_a_piston_leaves_no_room_is_squeezed() {
     assert!(pressed(0.02) < 0.05);
     assert!(pressed(0.08) > 0.9);
 }
+
+/// All of a slow layer yields, where mu(I) is ill-posed, and nothing creeps: what yields slower than the cap of viscosity counted as creep.
+#[test]
+fn what_yields_slowly_does_not_creep() {
+    let text = r#"
+name = "slow_layer"
+[domain]
+lower = [0, -0.05]
+upper = [0.2, 0.3]
+periodic = ["x"]
+slope = "20.95 deg"
+[numerics]
+spacing = 0.01
+expected_speed = 1.5
+[materials.s]
+law = "mu_i"
+preset = "glass_beads"
+grain_diameter = "5 mm"
+[bodies.a]
+material = "s"
+box = { lower = [0, 0], upper = [0.2, 0.1] }
+velocity_profile = "bagnold"
+[walls.floor]
+plane = { point = [0, 0], normal = [0, 1] }
+[run]
+step = 0.01
+until = 0.1
+"#;
+    let mut unit = Unit::new(&scene::parse("slow_layer", text).unwrap());
+    unit.run_to(0.1);
+    let (ill_posed, creep) = (
+        unit.get("validity.share_ill_posed"),
+        unit.get("validity.creep_rate"),
+    );
+    println!("ill-posed {ill_posed}, creep {creep} 1/s");
+    assert!(ill_posed > 0.99 && creep < 1e-3);
+}
