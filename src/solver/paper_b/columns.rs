@@ -1,13 +1,13 @@
 //! Effective pressure by columns ([B] eq. 10, corrected): at rest p_eff = (rho_sat - rho_w) g times the depth below the sediment's
 //! surface, which [B]'s single rho cannot say.
 //!
-//! A column is two spacings wide across gravity's main axis. The surface of a saturated material there is half a spacing above
-//! its highest particle that is not alone among others; pores carry the weight of their own fluid from there. Dry material
-//! carries all of its pressure, fluids have no grains.
+//! A column is two spacings wide across gravity's main axis. Its surface is half a spacing above its highest particle that is not
+//! alone among others; pores carry the weight of their own fluid from there. Dry material carries all of its pressure, fluids have no
+//! grains.
 //!
-//! Where several materials of grains lie in a column ([B] has one), what is above counts with its own weight w: buoyant if it is
-//! saturated, whole if it is dry. p_eff = g int w dz up to the surface, by trapezoids from grain to grain: a layer ends halfway
-//! between its last grain and the other's first. What hangs more than [`GAP`] above does not bear on what is below.
+//! What is above counts with its own weight w, also of other materials ([B] has one): buoyant if it is saturated, whole if it is
+//! dry. p_eff = g int w dz up to the surface, by trapezoids from grain to grain: a layer ends halfway between its last grain and
+//! the other's first. What hangs more than [`GAP`] above does not bear on what is below.
 
 use std::collections::BTreeMap;
 
@@ -21,9 +21,6 @@ use super::sums::Sums;
 /// Spacings between two grains of a column above which nothing lies between that carries [1].
 const GAP: f64 = 3.0;
 
-/// Place of a column across gravity, and its phase.
-type Column<const D: usize> = ([i64; D], u8);
-
 /// Grains of a column from the highest on: head [m^2/s^2], phase, p_eff [Pa].
 type Stack = Vec<(f64, u8, f64)>;
 
@@ -36,11 +33,6 @@ impl<const D: usize> Solver<D> {
         out: &mut Vec<f64>,
     ) {
         let grains = &state.grains;
-        let tops = if self.has_pores {
-            self.tops(state, sums)
-        } else {
-            BTreeMap::new()
-        };
         let stacks = self.stacks(state, sums);
         out.clear();
         out.extend((0..grains.len()).map(|i| {
@@ -52,39 +44,16 @@ impl<const D: usize> Solver<D> {
                 return self.pressure_of(state, i).max(0.0);
             }
             let x = &grains.position[i];
-            if let Some(stack) = stacks.get(&self.column(x)) {
-                return self.bearing(stack, self.head(x), grains.phase[i]);
-            }
-            let top = tops.get(&(self.column(x), grains.phase[i]));
-            let buoyant = material.rest_density() - material.grains.pore_density;
-            // Height times g; what is alone has nothing above it.
-            let above = top.map_or(0.0, |top| top - self.head(x));
-            let half = 0.5 * self.numerics.spacing * self.gravity_norm;
-            (buoyant * (above + half)).max(0.0)
+            let stack = stacks.get(&self.column(x));
+            let stack = stack.map_or(&[][..], |stack| stack);
+            self.bearing(stack, self.head(x), grains.phase[i])
         }));
     }
 
-    /// g times the height of the highest particle of each column and phase [m^2/s^2].
-    fn tops(&self, state: &State<D>, sums: &[Sums<D>]) -> BTreeMap<Column<D>, f64> {
-        let grains = &state.grains;
-        let mut tops = BTreeMap::new();
-        for (i, x) in grains.position.iter().enumerate() {
-            let saturated = self.materials[grains.phase[i] as usize].is_saturated();
-            if saturated && sums[i].lambda >= ALONE {
-                let top = tops
-                    .entry((self.column(x), grains.phase[i]))
-                    .or_insert(f64::NEG_INFINITY);
-                *top = f64::max(*top, self.head(x));
-            }
-        }
-        tops
-    }
-
-    /// Columns with several materials of grains.
+    /// Columns of grains.
     fn stacks(&self, state: &State<D>, sums: &[Sums<D>]) -> BTreeMap<[i64; D], Stack> {
         let mut stacks: BTreeMap<[i64; D], Stack> = BTreeMap::new();
-        let of_grains = self.materials.iter().filter(|m| !m.is_fluid()).count();
-        if !self.has_pores || of_grains < 2 {
+        if !self.has_pores {
             return stacks;
         }
         let grains = &state.grains;
@@ -95,7 +64,6 @@ impl<const D: usize> Solver<D> {
                 stack.push((self.head(x), phase, 0.0));
             }
         }
-        stacks.retain(|_, stack| stack.iter().any(|grain| grain.1 != stack[0].1));
         for stack in stacks.values_mut() {
             // Stable: grains as high as each other stay in their order.
             stack.sort_by(|a, b| b.0.total_cmp(&a.0));

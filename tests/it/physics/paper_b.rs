@@ -372,3 +372,70 @@ until = 0.1
         assert!(error.contains(what), "{what} is not in {error}");
     }
 }
+
+/// A clump of silt that hangs in the water presses on nothing: under it the bed has the effective pressure that it has beside it. It had six
+/// times that where clump and bed were of one material.
+#[test]
+fn what_hangs_in_the_water_bears_on_no_bed() {
+    let water = [
+        [0.0, 0.06, 0.2, 0.16],
+        [0.0, 0.16, 0.06, 0.22],
+        [0.14, 0.16, 0.2, 0.22],
+        [0.0, 0.22, 0.2, 0.26],
+    ];
+    let silt = [[0.0, 0.0, 0.2, 0.06], [0.06, 0.16, 0.14, 0.22]];
+    let bodies = |material: &str, boxes: &[[f64; 4]]| {
+        let body = |(n, [x, y, x2, y2]): (usize, &[f64; 4])| {
+            format!(
+                "[bodies.{material}{n}]\nmaterial = \"{material}\"\nbox = {{ lower = [{x}, {y}], upper = [{x2}, {y2}] }}\n"
+            )
+        };
+        boxes.iter().enumerate().map(body).collect::<String>()
+    };
+    let text = format!(
+        r#"
+name = "clump"
+[domain]
+lower = [-0.1, -0.1]
+upper = [0.3, 0.5]
+[numerics]
+spacing = "10 mm"
+scheme = "paper_b"
+smoothing_ratio = 2
+[materials.water]
+law = "fluid"
+preset = "water"
+[materials.silt]
+law = "constant_friction"
+friction_angle = "30 deg"
+density = 1990
+pore_fluid = "water"
+{}{}
+[walls.tank]
+polyline = [[0, 0.4], [0, 0], [0.2, 0], [0.2, 0.4]]
+slip = "free_slip"
+[gauges.under]
+kind = "pressure"
+at = [0.1, 0.03]
+quantity = "effective"
+[gauges.beside]
+kind = "pressure"
+at = [0.03, 0.03]
+quantity = "effective"
+[run]
+step = "10 ms"
+until = "0.1 s"
+"#,
+        bodies("water", &water),
+        bodies("silt", &silt)
+    );
+    let unit = Unit::new(&parse(&text));
+    for gauge in ["under", "beside"] {
+        let found = unit.get(&format!("gauge.{gauge}.pressure"));
+        let exact = 990.0 * 9.81 * 0.03;
+        assert!(
+            (found / exact - 1.0).abs() < 0.05,
+            "{gauge}: {found} Pa for {exact}"
+        );
+    }
+}
