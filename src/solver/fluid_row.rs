@@ -2,9 +2,10 @@
 //!
 //! Symbols: F = W'(r)/r <= 0, g = V_j F x, x = x_i - x_j, v = v_i - v_j, gamma shear rate.
 
-use crate::math::{Four, LANES, Lanes, Quad, Tensor, Vector, dot, shear_rate, trace};
+use crate::math::{Four, LANES, Lanes, Quad, Tensor, Vector, dot};
 
 use super::Solver;
+use super::directions;
 use super::meeting::KINDS;
 use super::pair::Block;
 use super::record::{Record, motions};
@@ -24,9 +25,8 @@ pub(super) struct Row<const D: usize> {
     pub(super) moment: Tensor<D>,
     /// gamma_pair^2 = (D + 2) sum V_j |F| (v_ij . x_ij)^2/r^2 [1/s^2].
     pub(super) pair_shear2: f64,
-    /// sum V_j |F| r^2 (cos 4 theta, sin 4 theta), theta the direction of x_ij: how far neighbours lie otherwise than evenly
-    /// all around; 0 in space and in scenes without fluids [1].
-    pub(super) fourfold: [f64; 2],
+    /// How neighbours lie otherwise than M says (`directions`); 0 in scenes without fluids [1].
+    pub(super) directions: [f64; directions::COUNT],
     /// sum V_j v_ij.(grad grad W_ij) v_ij: second derivative of sum V_j W_ij along straight ways; 0 in scenes without fluids
     /// [1/s^2].
     pub(super) curvature: f64,
@@ -46,7 +46,7 @@ impl<const D: usize> Row<D> {
         softer: [[0.0; D]; D],
         moment: [[0.0; D]; D],
         pair_shear2: 0.0,
-        fourfold: [0.0; 2],
+        directions: [0.0; directions::COUNT],
         curvature: 0.0,
         speed2: 0.0,
         side: [0.0; D],
@@ -58,28 +58,18 @@ impl<const D: usize> Row<D> {
     pub(super) fn add_pair(&mut self, x: &Vector<D>, vx: f64, w: f64, fluids: bool) {
         let weight = w / dot(x, x);
         self.pair_shear2 += (D as f64 + 2.0) * weight * vx * vx;
-        if D == 2 && fluids {
-            let (p, q) = ((x[0] - x[1]) * (x[0] + x[1]), 2.0 * x[0] * x[1]);
-            self.fourfold[0] += weight * (p - q) * (p + q);
-            self.fourfold[1] += weight * 2.0 * p * q;
+        if fluids {
+            let own = directions::of_neighbour(x, weight, 0.0);
+            self.directions
+                .iter_mut()
+                .zip(own)
+                .for_each(|(sum, own)| *sum += own);
         }
     }
 
-    /// gamma_pair^2 as it would be if velocities were linear with this deviator of the strain rate, a ring's hoop included;
-    /// in space as for neighbours that lie evenly all around [1/s^2].
+    /// gamma_pair^2 as it would be if velocities were linear with this deviator of the strain rate, a ring's hoop included [1/s^2].
     pub(super) fn even_pair_shear2(&self, e: &Tensor<D>) -> f64 {
-        let m = &self.moment;
-        if D != 2 {
-            return shear_rate(e).powi(2) * trace(m) / D as f64;
-        }
-        // e = t/2 I + [[a, b], [b, -a]], and x.e x = t r^2/2 + r^2 (a cos 2 theta + b sin 2 theta).
-        let t = trace(e);
-        let (a, b) = (0.5 * (e[0][0] - e[1][1]), e[0][1]);
-        let [even, odd] = self.fourfold;
-        let round = (0.5 * t * t + a * a + b * b) * trace(m);
-        let twofold = t * (a * (m[0][0] - m[1][1]) + 2.0 * b * m[0][1]);
-        // The hoop's own rate is -t.
-        2.0 * (round + (a * a - b * b) * even + 2.0 * a * b * odd) + 4.0 * twofold + t * t
+        directions::pair_shear2(&self.directions, &self.moment, e)
     }
 }
 
@@ -148,7 +138,8 @@ impl<const D: usize> Solver<D> {
             own[k] = Four::splat(lanes, vi[k]);
         }
         let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
-        let (mut pair_shear2, mut speed2, mut fourfold) = (zero, zero, [zero; 2]);
+        let (mut pair_shear2, mut speed2) = (zero, zero);
+        let mut around = [zero; directions::COUNT];
         let (mut side, mut nearness, mut curvature) = ([zero; D], zero, zero);
         let falloff = Four::splat(lanes, -3.0 * self.kernel.inverse_support());
         // Sums without harder and softer neighbours, and without softer ones.
@@ -203,10 +194,11 @@ impl<const D: usize> Solver<D> {
                 let steeper = volume * (slope * t * t) * falloff;
                 curvature += vf * (v2 + steeper * r * inverse * vx * vx);
             }
-            if D == 2 && FLUIDS {
-                let (p, q) = ((x[0] - x[1]) * (x[0] + x[1]), (x[0] + x[0]) * x[1]);
-                fourfold[0] -= weight * (p - q) * (p + q);
-                fourfold[1] -= weight * (p + p) * q;
+            if FLUIDS {
+                let own = directions::of_neighbour(&x, weight, zero);
+                for (sum, own) in around.iter_mut().zip(own) {
+                    *sum -= own;
+                }
             }
             speed2 = speed2.max(v2);
             *g = weights;
@@ -214,7 +206,7 @@ impl<const D: usize> Solver<D> {
         }
         let mut sums = Row {
             pair_shear2: dissipation * pair_shear2.sum(),
-            fourfold: fourfold.map(Four::sum),
+            directions: around.map(Four::sum),
             curvature: curvature.sum(),
             speed2: speed2.largest(),
             side: side.map(Four::sum),

@@ -13,6 +13,7 @@ mod barrier;
 mod constitutive;
 mod corners;
 mod devices;
+mod directions;
 mod equation_of_state;
 mod error;
 mod explicit;
@@ -53,6 +54,7 @@ mod ring;
 mod ring_tests;
 #[cfg(any(test, feature = "cli"))]
 mod sample;
+mod seams;
 mod shift;
 mod start;
 mod step;
