@@ -65,7 +65,7 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Moves plates towards the openings wanted; a plate that would run into material stops and says so, until
+    /// Moves plates towards the openings wanted; a plate that material holds or slows down says so, until
     /// [`State::forget_blocked`].
     pub(super) fn move_gates(&mut self, state: &mut State<D>, wanted: &[f64], dt: f64) {
         for g in 0..self.plates.len() {
@@ -73,9 +73,11 @@ impl<const D: usize> Solver<D> {
             let gate = state.gates[g];
             let most = (plate.max_speed * dt).min(MOST_OF_A_PLATE * self.kernel.h) / plate.length;
             let mut change = (wanted[g] - gate.opening).clamp(-most, most);
+            let mut slowed = false;
             if change < 0.0 {
-                let shutting = self.shutting_speed(state, g);
-                change = change.max(-shutting * dt / plate.length);
+                let shutting = self.shutting_speed(state, g) * dt / plate.length;
+                slowed = -change > shutting;
+                change = change.max(-shutting);
             }
             let mut rate = change / dt;
             let blocked = change < 0.0 && self.is_blocked(state, g);
@@ -89,7 +91,7 @@ impl<const D: usize> Solver<D> {
             };
             let gate = &mut state.gates[g];
             (gate.opening, gate.rate) = (opening, rate);
-            gate.blocked |= blocked;
+            gate.blocked |= blocked || slowed;
             self.plates[g].place(&mut self.walls, opening, rate);
         }
     }
