@@ -341,12 +341,12 @@ fn what_blocks_a_gate_is_told_for_the_whole_step() {
     }
     set(&mut silo, "gate.main.opening", 0.0);
     let (mut held, mut free) = (0, 0);
-    for _ in 0..10 {
+    for _ in 0..40 {
         let before = value(&silo, "gate.main.actual_opening");
-        silo.do_step(silo.time(), 0.02).unwrap();
+        silo.do_step(silo.time(), 0.005).unwrap();
         let moved = before - value(&silo, "gate.main.actual_opening");
         // 0.5 m/s of 32 mm.
-        let could = f64::min(before, 0.5 * 0.02 / 0.032);
+        let could = f64::min(before, 0.5 * 0.005 / 0.032);
         let blocked = value(&silo, "gate.main.blocked");
         let late = moved < (1.0 - 1e-9) * could;
         // A gate that was held and arrived all the same may say so.
