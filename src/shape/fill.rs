@@ -41,10 +41,8 @@ pub fn lattice(
     }
     let exact = matches!(shape, Shape::Box { .. });
     if !exact {
-        for k in 0..dimensions {
-            // Of rows below the level's nothing is left.
-            lower[k] = start[k];
-        }
+        // Of rows below the level's nothing is left.
+        lower[..dimensions].copy_from_slice(&start[..dimensions]);
     }
     let mut count = [1usize; 3];
     let mut step = [0.0; 3];
