@@ -26,6 +26,7 @@ impl Scene {
     }
 
     /// Particles that each body starts as; they stand in the bodies' order.
+    #[cfg(feature = "cli")]
     pub(crate) fn body_particles(&self) -> Vec<usize> {
         let lattices = match self.dimension {
             Dimension::Two | Dimension::Axisymmetric => lattices::<2>(self),
