@@ -26,8 +26,14 @@ pub fn lattices(fills: &[Fill], spacing: f64, dimensions: usize, staggered: bool
             false,
         )
     };
-    let own: Vec<Lattice> = fills.iter().map(alone).collect();
-    let below = |n: usize, axis: usize| stands_on(fills, &own[n], (n, axis), spacing);
+    // Boxes stand on nothing, nor does what is alone.
+    let asks = |fill: &&Fill| fills.len() > 1 && !matches!(fill.0, Shape::Box { .. });
+    let own = |fill: &Fill| Some(fill).filter(asks).map(alone);
+    let own: Vec<Option<Lattice>> = fills.iter().map(own).collect();
+    let below = |n: usize, axis: usize| {
+        let own = own[n].as_ref()?;
+        stands_on(fills, own, (n, axis), spacing)
+    };
     let start = |n: usize| {
         let mut start = fills[n].0.bounds().0;
         for (axis, start) in start.iter_mut().enumerate().take(dimensions) {
@@ -66,9 +72,6 @@ fn stands_on(
     (n, axis): (usize, usize),
     spacing: f64,
 ) -> Option<usize> {
-    if matches!(fills[n].0, Shape::Box { .. }) {
-        return None;
-    }
     let lowest = own
         .points
         .iter()

@@ -35,7 +35,7 @@ where
     q
 }
 
-/// (D + 2) e:Q:e from the sums over neighbours.
+/// (D + 2) e:Q:e from the sums over neighbours [1/s^2]: q, their moment m and a deviator e of the strain rate.
 pub(super) fn pair_shear2<const D: usize>(q: &[f64; COUNT], m: &Tensor<D>, e: &Tensor<D>) -> f64 {
     if D == 2 {
         return in_the_plane(q, m, e);

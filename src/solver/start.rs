@@ -152,10 +152,9 @@ impl<const D: usize> Solver<D> {
         if self.has_pores && self.numerics.scheme == Scheme::Implicit {
             self.sweep_kinematics(state);
             self.seep(state);
-            let grains = &mut state.grains;
-            grains
-                .relaxed_pore_pressure
-                .clone_from(&grains.pore_pressure);
+            // Suction is none, as in the steps (`pore/follow.rs`).
+            let pore = state.grains.pore_pressure.iter();
+            state.grains.relaxed_pore_pressure = pore.map(|p| p.max(0.0)).collect();
         }
         self.derive(state);
     }

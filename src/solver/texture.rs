@@ -113,7 +113,7 @@ mod tests {
             spacing: 0.01 * size,
             sound_speed: 10.0 * time,
             diffusion_gate_time: 0.3 * time,
-            ..super::super::sample::numerics()
+            ..crate::solver::sample::numerics()
         };
         let viscous = Viscous {
             consistency: consistency * size * time.powf(flow_index),
