@@ -82,7 +82,7 @@ const RULES: &[(&str, &[&str])] = &[
         &["refused_calls_leave_no_trace", "every_call_of_fmi_2_in_every_mode", "every_call_of_fmi_3_in_every_mode", "every_call_of_the_c_interface_in_every_mode"]),
     ("a refused call answers within a second and leaves the saved state byte for byte as it was: h = 0, negative, NaN, infinite, denormal, wrong t, past the stop time, unknown references, wrong lengths, inputs that are no number or out of range, fixed parameters after initialisation, every call in every wrong mode",
         &["refused_calls_leave_no_trace", "every_call_of_fmi_2_in_every_mode", "every_call_of_fmi_3_in_every_mode", "every_call_of_the_c_interface_in_every_mode"]),
-    ("an input that is out of range by up to a billionth of its range is clamped; beyond, it is refused, or clamped and reported (`logStatusWarning`) if `saturate_inputs` was true before the call",
+    ("an input that is out of range by up to a billionth of its range is clamped; beyond, it is refused, or clamped and reported (`logStatusWarning`) if `saturate_inputs` is true",
         &["inputs_are_clamped_only_as_far_as_allowed", "test_clamped_inputs_are_reported"]),
     ("set calls are all or nothing", &["sets_apply_all_or_nothing"]),
     ("a status that FMI 2 has no value for here (pending, integers, texts) is discarded, with a message; only such calls answer Discard",
