@@ -92,15 +92,18 @@ impl<const D: usize> WallPoints<D> {
         }
     }
 
-    /// Drops points closer than half a spacing to an earlier one (walls that overlap at corners). `together`: whether two groups
-    /// stay where they are to each other; what would part keeps all of its points.
+    /// Drops points closer than half a spacing to one of a rougher wall or, as rough, to an earlier one (walls that overlap at corners:
+    /// beside a smooth wall a bed goes on as its mirror image). `together`: whether two groups stay where they are to each other;
+    /// what would part keeps all of its points.
     pub fn drop_doubles(&mut self, spacing: f64, together: impl Fn(u16, u16) -> bool) {
         let reach = 0.5 * spacing;
         let cell =
             |x: &Vector<D>| -> [i64; D] { std::array::from_fn(|k| (x[k] / reach).floor() as i64) };
         let mut seen: HashMap<[i64; D], Vec<usize>> = HashMap::new();
         let mut keep = Vec::new();
-        for i in 0..self.len() {
+        let mut roughest_first: Vec<usize> = (0..self.len()).collect();
+        roughest_first.sort_by(|a, b| self.roughness(*b).total_cmp(&self.roughness(*a)));
+        for i in roughest_first {
             let here = cell(&self.position[i]);
             let near = (0..3usize.pow(D as u32)).any(|n| {
                 let mut m = n;
@@ -121,6 +124,15 @@ impl<const D: usize> WallPoints<D> {
                 keep.push(i);
             }
         }
+        keep.sort_unstable();
         self.pick(&keep);
+    }
+
+    /// Friction of a point's face [1]; what nothing slips along is roughest.
+    fn roughness(&self, point: usize) -> f64 {
+        match self.groups.get(self.group[point] as usize) {
+            Some(spec) if spec.free_slip => spec.friction,
+            _ => f64::INFINITY,
+        }
     }
 }

@@ -12,6 +12,7 @@ use super::meeting::KINDS;
 use super::mirror::add_image_gradient;
 use super::pair::Block;
 use super::record::Record;
+use super::reflect::add_reflected_gradient;
 
 /// What the sweep leaves per particle.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,6 +44,7 @@ impl<const D: usize> Solver<D> {
         let mut records = std::mem::take(&mut self.records);
         records.resize(n, Record::default());
         self.note_mirrors(state);
+        self.note_faces(state);
         let grains = &state.grains;
         self.workers.each(&mut records, |i, r| {
             let hoop = self.rings.get(i).map_or(0.0, |ring| ring.hoop);
@@ -130,6 +132,13 @@ impl<const D: usize> Solver<D> {
                     w.images = (first_image, block.images.len() as u32);
                     let v = &state.grains.velocity;
                     add_image_gradient(block.images_of(&w), i, v, &mut sums.images);
+                }
+                if FLUIDS && D > 2 && !self.faces.is_empty() {
+                    let first = block.reflections.len() as u32;
+                    self.find_reflections(state, i, block, &near[..count], &mut sums);
+                    w.reflections = (first, block.reflections.len() as u32);
+                    let v = &state.grains.velocity;
+                    add_reflected_gradient(block.reflections_of(&w), i, v, &mut sums.images);
                 }
                 block.wall_rows.push(w);
                 alone = false;

@@ -48,6 +48,7 @@ mod pressure;
 mod pressure_row;
 mod reactions;
 mod record;
+mod reflect;
 mod rest;
 mod ring;
 #[cfg(test)]
@@ -182,6 +183,8 @@ pub struct Solver<const D: usize> {
     lone: Vec<(u64, f64)>,
     /// The flat wall without slip that each particle of a fluid sees; empty in scenes without fluids and of rings.
     mirrors: Vec<mirror::Mirror<D>>,
+    /// The flat walls with free slip that each particle of a fluid sees; empty in the plane and in scenes without.
+    faces: Vec<reflect::Faces<D>>,
     /// Smallest eigenvalue of each particle's moment matrix, 1 far from surfaces; empty in scenes that do not shift [1].
     openness: Vec<f64>,
     /// Shift velocity of each particle in the step [m/s]; empty in scenes that do not shift.

@@ -5,6 +5,7 @@ use crate::math::{LANES, Quad, Tensor, Vector};
 use super::barrier::Rub;
 use super::meeting::KINDS;
 use super::mirror::Image;
+use super::reflect::Reflection;
 use super::wall_contact::Contact;
 
 /// Sums over the wall points that a particle sees. P projects on the normal at free slip, else P = I; w weight;
@@ -46,6 +47,7 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) carried: Vector<D>,
     /// Range of its images in the block.
     pub(super) images: (u32, u32),
+    pub(super) reflections: (u32, u32),
 }
 
 /// A chunk of rows.
@@ -81,6 +83,8 @@ pub(super) struct Block<const D: usize> {
     pub(super) wall_rows: Vec<WallRow<D>>,
     /// Images of neighbours across flat walls without slip, row after row; empty in scenes without fluids.
     pub(super) images: Vec<Image<D>>,
+    /// Images across flat walls with free slip, likewise; empty in the plane.
+    pub(super) reflections: Vec<Reflection<D>>,
     /// T of (F3) of each row; empty in scenes without.
     pub(super) textures: Vec<Tensor<D>>,
     /// M of each row that (T1) is for, 0 of others; empty in scenes without.
@@ -169,6 +173,7 @@ impl<const D: usize> Block<D> {
         self.kind_ends.clear();
         self.wall_rows.clear();
         self.images.clear();
+        self.reflections.clear();
         self.textures.clear();
         self.turning.clear();
         self.contacts.clear();
@@ -218,6 +223,12 @@ impl<const D: usize> Block<D> {
     #[inline(always)]
     pub(super) fn images_of(&self, w: &WallRow<D>) -> &[Image<D>] {
         &self.images[w.images.0 as usize..w.images.1 as usize]
+    }
+
+    /// Those across walls with free slip.
+    #[inline(always)]
+    pub(super) fn reflections_of(&self, w: &WallRow<D>) -> &[Reflection<D>] {
+        &self.reflections[w.reflections.0 as usize..w.reflections.1 as usize]
     }
 
     /// Calls `visit(j, k, g)` for the neighbours of a row, one at a time: k = 2 V_j |F| [1/m^2], g = V_j grad_i W_ij [1/m].

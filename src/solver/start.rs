@@ -116,6 +116,7 @@ impl<const D: usize> Solver<D> {
             turns,
             turning: Vec::new(),
             mirrors: Vec::new(),
+            faces: Vec::new(),
             openness: Vec::new(),
             shift: Vec::new(),
             shift_divergence: Vec::new(),

@@ -15,6 +15,7 @@ use super::meeting::{HARDER, LIKE, OTHER, SOFTER, add_differences, share};
 use super::mirror::{add_image_gradient, image_drag, image_force};
 use super::pair::Block;
 use super::record::{Record, Stresses, stresses};
+use super::reflect::{add_reflected_gradient, reflected_drag, reflected_force};
 use super::turning::add_turned_force;
 
 impl<const D: usize> Solver<D> {
@@ -40,6 +41,12 @@ impl<const D: usize> Solver<D> {
                             self.add_gradient(lanes, block, row, i, v, &mut gradient);
                             if let Some(w) = wall {
                                 add_image_gradient(block.images_of(w), i, v, &mut gradient);
+                                add_reflected_gradient(
+                                    block.reflections_of(w),
+                                    i,
+                                    v,
+                                    &mut gradient,
+                                );
                             }
                             self.unturned(i, &mut gradient);
                             *o = Record::of_stress(&self.row_stress(i, &v[i], &gradient), &v[i]);
@@ -142,10 +149,18 @@ impl<const D: usize> Solver<D> {
                             let less = image_drag(block.images_of(w), &v, |j| {
                                 (records[j].velocity(), self.between(i, j))
                             });
+                            let (ahead, sheared) = (
+                                reflected_force(block.reflections_of(w), &own.stress(), |j| {
+                                    records[j].stress()
+                                }),
+                                reflected_drag(block.reflections_of(w), &v, |j| {
+                                    (records[j].velocity(), self.between(i, j))
+                                }),
+                            );
                             for k in 0..D {
                                 let drive = if with_walls { w.cv[k] } else { 0.0 };
-                                let pairs = 2.0 * (drag[k] - drive) - less[k];
-                                f[k] += stress[k] + image[k] - share * pairs;
+                                let pairs = 2.0 * (drag[k] - drive) - less[k] + sheared[k];
+                                f[k] += stress[k] + image[k] + ahead[k] - share * pairs;
                             }
                         }
                         let (value, part) = finish(i, &scale(self.width * self.volume[i], &f));

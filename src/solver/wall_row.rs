@@ -310,6 +310,7 @@ impl<const D: usize> WallRow<D> {
             moment_drive: [0.0; D],
             carried: [0.0; D],
             images: (0, 0),
+            reflections: (0, 0),
         }
     }
 

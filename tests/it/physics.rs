@@ -26,6 +26,7 @@ mod rheology;
 mod roofs;
 mod seams;
 mod silo;
+mod slices;
 mod tension;
 mod turning;
 mod validity;
