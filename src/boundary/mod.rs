@@ -8,6 +8,7 @@ mod ends;
 mod mover;
 mod plate;
 mod points;
+mod tips;
 mod wall_points;
 
 pub use element::{Element, box_elements, plane_elements, polyline_elements};
@@ -15,4 +16,5 @@ pub use ends::{End, free_ends};
 pub use mover::{Mover, RigidMotion};
 pub use plate::{Meets, Plate};
 pub use points::{ROWS, box_points, joined_points, plane_points, polyline_points};
+pub use tips::tip_points;
 pub use wall_points::{GroupSpec, WallPoints};

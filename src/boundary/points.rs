@@ -1,5 +1,6 @@
 //! Where wall points lie: rows behind polylines, planes and in boxes.
 
+use super::tips::Tip;
 use crate::math::{Vector, add, dot, norm, scale, sub};
 
 /// Rows of points behind a wall's surface: enough for a support of 2 h at h/dp <= 2.
@@ -8,7 +9,8 @@ pub const ROWS: usize = 4;
 /// (position, normal, weight) of the points behind a polyline with the material on its left.
 ///
 /// Row k is the polyline moved (k + 1/2) dp to the right with mitred corners; points sit on the corners and evenly
-/// between them, half a spacing from free ends. Their weight is the actual spacing over dp.
+/// between them, half a spacing from free ends. Their weight is the actual spacing over dp. The first row has none on acute
+/// corners of the wall's body: those of [`super::tip_points`] stand for it.
 #[must_use]
 pub fn polyline_points(
     corners: &[[f64; 2]],
@@ -34,29 +36,28 @@ pub fn joined_points(
     };
     let mut points = Vec::new();
     for row in 0..ROWS {
-        let depth = (row as f64 + 0.5) * spacing;
         for s in 0..polyline.segments() {
-            polyline.add_segment(s, depth, spacing, &mut points);
+            polyline.add_segment(s, row, spacing, &mut points);
         }
     }
     points
 }
 
 /// A wall's surface in the plane.
-struct Polyline<'a> {
-    corners: &'a [[f64; 2]],
-    closed: bool,
+pub(super) struct Polyline<'a> {
+    pub corners: &'a [[f64; 2]],
+    pub closed: bool,
     /// Directions of what goes on from its ends: see [`joined_points`].
-    joints: [Option<[f64; 2]>; 2],
+    pub joints: [Option<[f64; 2]>; 2],
 }
 
 /// Normal of a direction, to its right.
-fn right(t: &[f64; 2]) -> [f64; 2] {
+pub(super) fn right(t: &[f64; 2]) -> [f64; 2] {
     [t[1], -t[0]]
 }
 
 impl Polyline<'_> {
-    fn segments(&self) -> usize {
+    pub(super) fn segments(&self) -> usize {
         let n = self.corners.len();
         if self.closed { n } else { n - 1 }
     }
@@ -68,8 +69,8 @@ impl Polyline<'_> {
         scale(1.0 / norm(&d), &d)
     }
 
-    /// Corner c moved to the row at this depth [m]: the two neighbouring rows meet there.
-    fn moved(&self, c: usize, depth: f64) -> [f64; 2] {
+    /// Directions in which its sides arrive at corner c and leave it.
+    pub(super) fn sides(&self, c: usize) -> [Option<[f64; 2]>; 2] {
         let segments = self.segments();
         let before = if c > 0 || self.closed {
             Some(self.tangent((c + segments - 1) % segments))
@@ -81,46 +82,74 @@ impl Polyline<'_> {
         } else {
             self.joints[1]
         };
+        [before, after]
+    }
+
+    /// Corner c moved to the row at this depth [m]: the two neighbouring rows meet there.
+    fn moved(&self, c: usize, depth: f64) -> [f64; 2] {
         let corner = &self.corners[c % self.corners.len()];
-        match (before, after) {
-            (Some(a), Some(b)) => {
+        match self.sides(c) {
+            [Some(a), Some(b)] => {
                 let (ra, rb) = (right(&a), right(&b));
                 let m = add(&ra, &rb);
-                // Limited so that hairpins do not shoot out.
-                let f = 2.0 / dot(&m, &m).max(0.25);
+                // Limited where they go round the outside of a hairpin, so that they do not shoot out.
+                let least = if self.tip(c).is_some() { 0.0 } else { 0.25 };
+                let f = 2.0 / dot(&m, &m).max(least);
                 add(corner, &scale(depth * f, &m))
             }
-            (Some(a), None) => add(corner, &scale(depth, &right(&a))),
-            (None, Some(b)) => add(corner, &scale(depth, &right(&b))),
-            (None, None) => *corner,
+            [Some(a), None] => add(corner, &scale(depth, &right(&a))),
+            [None, Some(b)] => add(corner, &scale(depth, &right(&b))),
+            [None, None] => *corner,
         }
     }
 
-    /// Adds the points of segment s in the row at this depth [m].
+    /// How far from corner c the row at this depth ends [m] where the other side of an acute corner is too short to have one: no
+    /// further back than that side reaches.
+    fn cut(&self, c: usize, depth: f64) -> Option<f64> {
+        let Tip { slope, leg, .. } = self.tip(c)?;
+        (depth > leg * slope).then_some(leg)
+    }
+
+    /// Adds the points of segment s in this row.
     fn add_segment(
         &self,
         s: usize,
-        depth: f64,
+        row: usize,
         spacing: f64,
         points: &mut Vec<([f64; 2], [f64; 2], f64)>,
     ) {
-        let (a, b) = (self.moved(s, depth), self.moved(s + 1, depth));
+        let depth = (row as f64 + 0.5) * spacing;
         let t = self.tangent(s);
+        let n = self.corners.len();
+        let cuts = [s, s + 1].map(|c| self.cut(c, depth));
+        let end = |c: usize, cut: Option<f64>, way: f64| {
+            cut.map_or_else(
+                || self.moved(c, depth),
+                |leg| {
+                    let along = add(&self.corners[c % n], &scale(way * leg, &t));
+                    add(&along, &scale(depth, &right(&t)))
+                },
+            )
+        };
+        let (a, b) = (end(s, cuts[0], 1.0), end(s + 1, cuts[1], -1.0));
         let length = dot(&sub(&b, &a), &t);
-        let free_start = s == 0 && !self.closed && self.joints[0].is_none();
-        let free_end = s + 1 == self.segments() && !self.closed && self.joints[1].is_none();
+        let open = |end: usize| !self.closed && self.joints[end].is_none();
+        let free_start = (s == 0 && open(0)) || cuts[0].is_some();
+        let free_end = (s + 1 == self.segments() && open(1)) || cuts[1].is_some();
         // Half a spacing is left out at a free end; a joint's point belongs to the segment that starts there.
         let ends = 0.5 * (f64::from(u8::from(free_start)) + f64::from(u8::from(free_end)));
         let count = (length / spacing + 1.0 - ends).round();
-        if count < 1.0 || length <= 0.0 {
+        let is_cut = cuts.iter().any(Option::is_some);
+        if count < 1.0 || length <= 0.0 || (is_cut && length < 0.5 * spacing) {
             return;
         }
         let step = length / (count - 1.0 + ends).max(1.0);
         let first = if free_start { 0.5 * step } else { 0.0 };
         let shared_end = !free_end;
+        let has_tip = row == 0 && !free_start && self.tip(s).is_some();
         let normal = scale(-1.0, &right(&t));
         let count = count as usize;
-        for k in 0..count {
+        for k in usize::from(has_tip)..count {
             if shared_end && k + 1 == count && count > 1 {
                 break;
             }

@@ -14,6 +14,7 @@ mod gates;
 mod gliding;
 mod incline;
 mod leaks;
+mod lips;
 mod meeting;
 mod moving_walls;
 mod packing;

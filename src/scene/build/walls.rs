@@ -2,7 +2,7 @@
 
 use crate::boundary::{
     End, GroupSpec, Mover, ROWS, RigidMotion, WallPoints, box_points, free_ends, joined_points,
-    plane_points,
+    plane_points, tip_points,
 };
 use crate::math::{norm, scale};
 use crate::solver::Periodic;
@@ -41,6 +41,10 @@ pub(super) fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> Wa
     }
     let wall = |group: u16| &scene.walls[group as usize];
     points.drop_doubles(dp, |a, b| wall(a).moves_with(wall(b)));
+    // Afterwards: in a tip points lie closer than that, and two at each place.
+    for n in 0..scene.walls.len() {
+        add_tips(&mut points, scene, n);
+    }
     for (n, gate) in scene.gates.iter().enumerate() {
         points
             .groups
@@ -80,6 +84,28 @@ fn add_polyline<const D: usize>(
             rim,
         };
         points.add_end(end, length, group);
+    }
+}
+
+/// Points in the acute corners of a chain of straight sides.
+fn add_tips<const D: usize>(points: &mut WallPoints<D>, scene: &Scene, wall: usize) {
+    let Wall {
+        geometry, velocity, ..
+    } = &scene.walls[wall];
+    let WallGeometry::Polyline {
+        points: corners,
+        closed,
+    } = geometry
+    else {
+        return;
+    };
+    let (dp, joints) = (scene.numerics.spacing, joints(scene, wall));
+    let wide = |x: [f64; 2]| narrow(&[x[0], x[1], 0.0]);
+    let is_shown = |x: [f64; 2]| scene.dimension != Dimension::Axisymmetric || x[0] > 0.0;
+    for (x, normal, weight) in tip_points(corners, *closed, joints, dp) {
+        if is_shown(x) {
+            points.push(wide(x), narrow(velocity), wide(normal), weight, wall as u16);
+        }
     }
 }
 
