@@ -2,6 +2,7 @@
 
 use super::faces::Face;
 use super::geometry::{Region, cross, edges};
+use super::thinness::{Segment, crossing, most_spacing};
 use super::walls::Solid;
 use super::{Filled, Lift};
 use crate::math::{dot, sub};
@@ -13,6 +14,7 @@ impl Lift<'_> {
     pub(super) fn check_bodies_against_devices(&mut self) {
         let eps = self.eps();
         let spacing = self.spacing.unwrap_or(0.0);
+        let chains = self.chains();
         let (mut hits, mut thin) = (Vec::new(), Vec::new());
         for Filled { place, region, .. } in &self.filled {
             let plates = self.plates.iter().map(|d| {
@@ -36,7 +38,7 @@ impl Lift<'_> {
                 }
             }
             for (other, solid) in &self.solids {
-                match solid.meets(region, spacing, eps) {
+                match solid.meets(region, &chains, spacing, eps) {
                     Some(Hit::TooThin(most)) => thin.push((place, other.key.clone(), most)),
                     Some(hit) => {
                         hits.push((place, format!("{} {}", hit.how(), other.key), hit.remedy()));
@@ -69,8 +71,9 @@ impl Lift<'_> {
     /// Inflows let material in outside walls.
     pub(super) fn check_inflow_against_walls(&mut self, place: &Place, face: &Face) {
         let (spacing, eps) = (self.spacing.unwrap_or(0.0), self.eps());
+        let chains = self.chains();
         let hits = self.solids.iter().filter_map(|(other, solid)| {
-            let hit = solid.meets_face(face, spacing, eps)?;
+            let hit = solid.meets_face(face, &chains, spacing, eps)?;
             Some((format!("{} {}", hit.how(), other.key), hit))
         });
         let hits: Vec<_> = hits.collect();
@@ -82,6 +85,15 @@ impl Lift<'_> {
                 hit.remedy().replace("body", "inflow"),
             );
         }
+    }
+
+    /// The sides of all chains: what is behind one may be before another one's.
+    fn chains(&self) -> Vec<Segment> {
+        let sides = self.solids.iter().flat_map(|(_, solid)| match solid {
+            Solid::Polyline(segments) => segments.as_slice(),
+            _ => &[],
+        });
+        sides.copied().collect()
     }
 }
 
@@ -96,7 +108,7 @@ pub(super) enum Hit {
     Crosses,
     /// It lies in the first row of a chain's particles.
     OnTheRight,
-    /// The first row behind one part of a chain lies before another: the wall is too thin there for spacings above this [m].
+    /// The first row behind one side of a chain lies before another: the wall is too thin there for spacings above this [m].
     TooThin(f64),
 }
 
@@ -127,7 +139,7 @@ impl Hit {
 
 impl Solid {
     /// How a body meets this wall where it must not; `None` if it keeps clear.
-    fn meets(&self, region: &Region, spacing: f64, eps: f64) -> Option<Hit> {
+    fn meets(&self, region: &Region, chains: &[Segment], spacing: f64, eps: f64) -> Option<Hit> {
         match self {
             Solid::Block(block) => block.overlaps(region, eps).then_some(Hit::Overlaps),
             Solid::Plane { point, normal } => {
@@ -147,7 +159,7 @@ impl Solid {
             Solid::Polyline(segments) => {
                 let hits = segments
                     .iter()
-                    .flat_map(|&segment| meets_chain(segments, segment, region, spacing, eps));
+                    .flat_map(|&segment| meets_segment(chains, segment, region, spacing, eps));
                 // Where the body is in the wall, its thin parts are no matter.
                 let worst = |hit: &Hit| match hit {
                     Hit::TooThin(most) => *most,
@@ -159,14 +171,14 @@ impl Solid {
     }
 
     /// As [`Solid::meets`], of the room that an inflow's rows appear in.
-    fn meets_face(&self, face: &Face, spacing: f64, eps: f64) -> Option<Hit> {
+    fn meets_face(&self, face: &Face, chains: &[Segment], spacing: f64, eps: f64) -> Option<Hit> {
         match (self, face.outline()) {
             (Solid::Plane { point, normal }, _) => face
                 .corners()
                 .chain(face.row())
                 .any(|x| dot(&sub(&x, point), normal) < -eps)
                 .then_some(Hit::Behind),
-            (_, Some(outline)) => self.meets(&outline, spacing, eps),
+            (_, Some(outline)) => self.meets(&outline, chains, spacing, eps),
             (Solid::Block(block), None) => face
                 .row()
                 .any(|x| block.holds(x, eps))
@@ -182,12 +194,10 @@ fn round_down(length: f64) -> f64 {
     (length / unit).floor() * unit
 }
 
-type Segment = ([f64; 2], [f64; 2]);
-
-/// How a body meets one segment of a chain where it must not.
-fn meets_chain(
-    chain: &[Segment],
-    (a, b): Segment,
+/// How a body meets one side of a chain where it must not.
+fn meets_segment(
+    chains: &[Segment],
+    own: Segment,
     region: &Region,
     spacing: f64,
     eps: f64,
@@ -195,32 +205,20 @@ fn meets_chain(
     let Region::Polygon(points) = region else {
         return Vec::new();
     };
-    if edges(points).any(|e| cross(e, (a, b), eps)) {
+    if edges(points).any(|e| cross(e, own, eps)) {
         return vec![Hit::Crosses];
     }
-    let probes = probes_behind(a, b, spacing);
-    let met = probes.filter(|(_, probe)| region.holds([probe[0], probe[1], 0.0], eps));
-    met.map(|(foot, probe)| {
-        let others = chain.iter().filter(|other| **other != (a, b));
-        let nearest = others.filter_map(|other| share_before((foot, probe), *other));
-        match nearest.reduce(f64::min) {
-            // Twice the way to the other side, as the probe lies half a spacing away.
-            Some(share) => Hit::TooThin(share * spacing),
-            None => Hit::OnTheRight,
-        }
-    })
-    .collect()
-}
-
-/// Share of the way `from` - `to` at which it crosses a segment.
-fn share_before((from, to): Segment, (a, b): Segment) -> Option<f64> {
-    let turn = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
-    let between = |u: [f64; 2], v: [f64; 2]| [v[0] - u[0], v[1] - u[1]];
-    let (way, along, to_a) = (between(from, to), between(a, b), between(from, a));
-    let slant = turn(way, along);
-    let (share, place) = (turn(to_a, along) / slant, turn(to_a, way) / slant);
-    // Of parallels both are no numbers.
-    ((0.0..=1.0).contains(&share) && (0.0..=1.0).contains(&place)).then_some(share)
+    let others = || chains.iter().filter(|other| **other != own);
+    let mut probes = probes_behind(own.0, own.1, spacing);
+    let is_behind = |way: Segment| {
+        let held = region.holds([way.1[0], way.1[1], 0.0], eps);
+        held && !others().any(|other| crossing(way, *other))
+    };
+    if probes.any(is_behind) {
+        return vec![Hit::OnTheRight];
+    }
+    let most = others().filter_map(|other| most_spacing(own, *other, region, spacing, eps));
+    most.map(Hit::TooThin).collect()
 }
 
 /// Points on a segment, each with the one half a spacing to the right of it: the wall's first row of particles.

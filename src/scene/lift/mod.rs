@@ -22,6 +22,7 @@ mod profile;
 mod run;
 mod scheme;
 mod sound_speed;
+mod thinness;
 mod unused;
 mod walls;
 

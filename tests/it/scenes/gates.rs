@@ -80,3 +80,61 @@ fn a_gate_may_be_two_spacings_wide_however_that_is_rounded() {
         "{said}"
     );
 }
+
+/// A tank whose floor ends in a lip 0.14 m long, cut away below at this angle.
+fn lip(degrees: f64, spacing: f64) -> Result<scene::Scene, scene::SceneErrors> {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let (x, y) = (0.25 - 0.14 * cos, -0.14 * sin);
+    let text = format!(
+        r#"
+name = "lip"
+[domain]
+lower = [-0.2, -0.6]
+upper = [0.8, 1.0]
+[numerics]
+spacing = {spacing}
+[materials.water]
+law = "fluid"
+preset = "water"
+[bodies.water]
+material = "water"
+box = {{ lower = [0, 0], upper = [0.6, 0.4] }}
+[walls.left]
+polyline = [[0, 0.9], [0, 0], [0.25, 0], [{x}, {y}]]
+[walls.right]
+polyline = [[0.35, 0], [0.6, 0], [0.6, 0.9]]
+[run]
+step = 0.02
+until = 1
+"#
+    );
+    scene::parse("lip.toml", &text)
+}
+
+/// However sharp: what is accepted is so with finer spacings, and a figure that is named passes.
+#[test]
+fn a_sharp_lip_is_refused_by_one_figure_or_not_at_all() {
+    for degrees in [12.0, 20.0, 30.0, 40.0, 44.9, 45.0, 46.0, 52.0, 60.0] {
+        let mut figure = None;
+        for n in 0..60 {
+            let spacing = 0.05 * 0.95_f64.powi(n);
+            match lip(degrees, spacing) {
+                Ok(_) => figure = Some(f64::INFINITY),
+                Err(said) => {
+                    let said = said.to_string();
+                    let most = said.split("a spacing of at most ").nth(1);
+                    let most = most.unwrap_or_else(|| panic!("{degrees} {spacing}: {said}"));
+                    let most: f64 = most.split(' ').next().unwrap().parse().unwrap();
+                    assert!(most < spacing, "{degrees} {spacing}: {most}");
+                    assert!(
+                        figure.is_none_or(|before| before == most),
+                        "{degrees}: {said}"
+                    );
+                    lip(degrees, most).unwrap();
+                    figure = Some(most);
+                }
+            }
+        }
+        assert_eq!(figure, Some(f64::INFINITY), "{degrees}");
+    }
+}
