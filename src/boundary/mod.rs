@@ -3,6 +3,7 @@
 //! A wall point counts twice in every pair sum and takes the volume, pressure and stress of the particle that sees it
 //! (docs/theory.md, "Walls"): no distance to the wall is needed.
 
+mod bends;
 mod element;
 mod ends;
 mod mover;
@@ -11,6 +12,7 @@ mod points;
 mod tips;
 mod wall_points;
 
+pub use bends::to_centres;
 pub use element::{Element, box_elements, plane_elements, polyline_elements};
 pub use ends::{End, free_ends};
 pub use mover::{Mover, RigidMotion};

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::wall_points::WallPoints;
-use crate::math::{Tensor, Vector, add, apply, multiply, norm, scale, sub};
+use crate::math::{Tensor, Vector, add, apply, multiply, norm, scale, skew, sub};
 
 /// How a rigid body moves: its centre at `velocity`, turning about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,26 +25,10 @@ impl<const D: usize> RigidMotion<D> {
         add(&self.centre, &scale(t, &self.velocity))
     }
 
-    /// The tensor J with axis x a = J a.
-    fn across_axis(&self) -> Tensor<D> {
-        let mut j = [[0.0; D]; D];
-        if D == 2 {
-            j[0][1] = -1.0;
-            j[1][0] = 1.0;
-        } else {
-            for k in 0..D {
-                let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-                j[b][a] = self.axis[k];
-                j[a][b] = -self.axis[k];
-            }
-        }
-        j
-    }
-
     /// Rotation since time 0 (Rodrigues): I + sin(w t) J + (1 - cos(w t)) J J.
     #[must_use]
     pub fn rotation_at(&self, t: f64) -> Tensor<D> {
-        let j = self.across_axis();
+        let j = skew::<D>(&self.unit_axis());
         let (sin, cos) = (self.rate * t).sin_cos();
         let jj = multiply(&j, &j);
         std::array::from_fn(|a| {
@@ -58,8 +42,18 @@ impl<const D: usize> RigidMotion<D> {
     #[must_use]
     pub fn velocity_at(&self, x: &Vector<D>, t: f64) -> Vector<D> {
         let arm = sub(x, &self.centre_at(t));
-        let turning = scale(self.rate, &apply(&self.across_axis(), &arm));
+        let turning = scale(self.rate, &apply(&skew(&self.unit_axis()), &arm));
         add(&self.velocity, &turning)
+    }
+
+    /// Angular velocity [rad/s].
+    #[must_use]
+    pub fn spin(&self) -> [f64; 3] {
+        scale(self.rate, &self.unit_axis())
+    }
+
+    fn unit_axis(&self) -> [f64; 3] {
+        if D == 2 { [0.0, 0.0, 1.0] } else { self.axis }
     }
 }
 
@@ -70,6 +64,7 @@ pub struct Mover<const D: usize> {
     points: Range<usize>,
     position: Vec<Vector<D>>,
     normal: Vec<Vector<D>>,
+    to_centre: Vec<Vector<D>>,
     /// Bound of the points' speed [m/s].
     speed: f64,
 }
@@ -89,6 +84,7 @@ impl<const D: usize> Mover<D> {
         Self {
             speed: norm(&motion.velocity) + motion.rate.abs() * arm,
             normal: walls.normal[points.clone()].to_vec(),
+            to_centre: walls.to_centre.get(points.clone()).unwrap_or(&[]).to_vec(),
             motion,
             points,
             position,
@@ -104,6 +100,9 @@ impl<const D: usize> Mover<D> {
             walls.velocity[i] = self.motion.velocity_at(&x, t);
             walls.position[i] = x;
             walls.normal[i] = apply(&turn, &self.normal[n]);
+            if let Some(to) = self.to_centre.get(n) {
+                walls.to_centre[i] = apply(&turn, to);
+            }
         }
     }
 

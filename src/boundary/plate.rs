@@ -262,6 +262,7 @@ mod tests {
                 friction: 0.0,
                 moves: false,
                 wants_force: false,
+                spin: [0.0; 3],
             }],
             ..WallPoints::default()
         };

@@ -62,25 +62,37 @@ impl Polyline<'_> {
         if self.closed { n } else { n - 1 }
     }
 
+    /// From start to end of segment s.
+    fn way(&self, s: usize) -> [f64; 2] {
+        let n = self.corners.len();
+        sub(&self.corners[(s + 1) % n], &self.corners[s % n])
+    }
+
     /// Unit direction of segment s.
     fn tangent(&self, s: usize) -> [f64; 2] {
-        let n = self.corners.len();
-        let d = sub(&self.corners[(s + 1) % n], &self.corners[s % n]);
+        let d = self.way(s);
         scale(1.0 / norm(&d), &d)
     }
 
     /// Directions in which its sides arrive at corner c and leave it.
     pub(super) fn sides(&self, c: usize) -> [Option<[f64; 2]>; 2] {
+        self.sides_at(c).map(|side| side.map(|(t, _)| t))
+    }
+
+    /// Direction and length of what arrives at corner c and of what leaves it; no length is told of what goes on from an end.
+    pub(super) fn sides_at(&self, c: usize) -> [Option<([f64; 2], f64)>; 2] {
         let segments = self.segments();
+        let side = |s: usize| Some((self.tangent(s), norm(&self.way(s))));
+        let joint = |j: usize| self.joints[j].map(|t| (t, f64::INFINITY));
         let before = if c > 0 || self.closed {
-            Some(self.tangent((c + segments - 1) % segments))
+            side((c + segments - 1) % segments)
         } else {
-            self.joints[0]
+            joint(0)
         };
         let after = if c < segments || self.closed {
-            Some(self.tangent(c % segments))
+            side(c % segments)
         } else {
-            self.joints[1]
+            joint(1)
         };
         [before, after]
     }

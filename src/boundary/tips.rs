@@ -2,7 +2,7 @@
 //! dp/(2 sin(a/2)) behind a tip of angle a, and what flows past would cut across it. Points in the tip stand for it.
 
 use super::points::{Polyline, right};
-use crate::math::{add, dot, norm, scale, sub};
+use crate::math::{add, dot, norm, scale};
 
 /// |cos a| of an angle that counts as a right one: square corners keep their lattice.
 const SQUARE: f64 = 1e-6;
@@ -42,12 +42,12 @@ impl Polyline<'_> {
 
     /// Length of the shorter of its own sides at corner c [m].
     fn leg(&self, c: usize) -> f64 {
-        let (n, segments) = (self.corners.len(), self.segments());
-        let length = |s: usize| norm(&sub(&self.corners[(s + 1) % n], &self.corners[s % n]));
-        let before = (c > 0 || self.closed).then(|| length((c + segments - 1) % segments));
-        let after = (c < segments || self.closed).then(|| length(c % segments));
-        let long = f64::INFINITY;
-        before.unwrap_or(long).min(after.unwrap_or(long))
+        let lengths = self
+            .sides_at(c)
+            .into_iter()
+            .flatten()
+            .map(|(_, length)| length);
+        lengths.fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -100,6 +100,7 @@ fn slices(slope: f64, leg: f64) -> impl Iterator<Item = (f64, f64)> {
 mod tests {
     use super::*;
     use crate::boundary::{joined_points, polyline_points};
+    use crate::math::sub;
 
     const DP: f64 = 0.1;
 

@@ -16,6 +16,8 @@ pub struct GroupSpec {
     pub moves: bool,
     /// Whether somebody reads the force on it.
     pub wants_force: bool,
+    /// Angular velocity, by which its velocity changes from place to place: about z in the plane [rad/s].
+    pub spin: [f64; 3],
 }
 
 /// All wall points: fixed walls first, then gates.
@@ -27,6 +29,8 @@ pub struct WallPoints<const D: usize> {
     pub velocity: Vec<Vector<D>>,
     /// Unit normal towards the material (free slip only needs it).
     pub normal: Vec<Vector<D>>,
+    /// From the point to the centre of the bend of the face that it lies behind, 0 where that is flat [m]; empty where all are.
+    pub to_centre: Vec<Vector<D>>,
     /// Share of a full point, 0 to 1 (spacing differs from dp, or the plate's end is half hidden).
     pub weight: Vec<f64>,
     /// Index into `groups`.
@@ -54,6 +58,13 @@ impl<const D: usize> WallPoints<D> {
         self.normal.push(normal);
         self.weight.push(weight);
         self.group.push(group);
+    }
+
+    /// From a point to the centre of the bend that it lies in, if it does [m].
+    #[inline(always)]
+    #[must_use]
+    pub fn bend(&self, point: usize) -> Option<&Vector<D>> {
+        self.to_centre.get(point).filter(|to| **to != [0.0; D])
     }
 
     /// Number of points.
@@ -85,6 +96,10 @@ impl<const D: usize> WallPoints<D> {
         pick(&mut self.velocity, keep);
         pick(&mut self.normal, keep);
         pick(&mut self.weight, keep);
+        if !self.to_centre.is_empty() {
+            self.to_centre.resize(count, [0.0; D]);
+            pick(&mut self.to_centre, keep);
+        }
         pick(&mut self.group, keep);
         if !self.ends.is_empty() {
             self.end.resize(count, 0);

@@ -120,6 +120,24 @@ pub fn multiply<const D: usize>(a: &Tensor<D>, b: &Tensor<D>) -> Tensor<D> {
     })
 }
 
+/// The tensor that turns with this angular velocity: w x a = skew(w) a, in the plane about z.
+#[inline(always)]
+#[must_use]
+pub fn skew<const D: usize>(w: &[f64; 3]) -> Tensor<D> {
+    let mut j = [[0.0; D]; D];
+    if D == 2 {
+        j[0][1] = -w[2];
+        j[1][0] = w[2];
+    } else {
+        for k in 0..D {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            j[b][a] = w[k];
+            j[a][b] = -w[k];
+        }
+    }
+    j
+}
+
 /// Trace.
 #[inline(always)]
 #[must_use]

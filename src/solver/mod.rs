@@ -10,6 +10,7 @@
 
 mod acoustic;
 mod barrier;
+mod bend;
 mod constitutive;
 mod corners;
 mod devices;

@@ -18,9 +18,9 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) s: Vector<D>,
     /// sum v_w . g.
     pub(super) drive: f64,
-    /// k[a][b][c] = sum P_ab g_c.
+    /// k[a][b][c] = sum P_ab g_c, and what turns in bends.
     pub(super) k: [Tensor<D>; D],
-    /// q[a][c] = sum (P v_w)_a g_c.
+    /// q[a][c] = sum (P v_w)_a g_c, and what turns in bends and with walls.
     pub(super) q: Tensor<D>,
     /// sum c (P g)(P g)^T, pair form.
     pub(super) c: Tensor<D>,
@@ -45,6 +45,8 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) moment_drive: Vector<D>,
     /// a* - g of (W7) in this step, times what of L is kept [m/s^2].
     pub(super) carried: Vector<D>,
+    /// Of bends and turning walls: what M lacks of the identity, over the trace of the walls' part of it; else 0.
+    pub(super) lack: Tensor<D>,
     /// Range of its images in the block.
     pub(super) images: (u32, u32),
     pub(super) reflections: (u32, u32),

@@ -5,6 +5,7 @@ use crate::math::{CHUNK, Vector, add, apply, dot, norm, scale, sub};
 use crate::state::State;
 
 use super::Solver;
+use super::bend::Bend;
 use super::corners::{Push, part_at_corners};
 use super::pair::WallRow;
 use super::seams::{OF_FLUIDS, share_at_seams};
@@ -26,8 +27,9 @@ struct Reach<const D: usize> {
     g: Vector<D>,
     /// The same for pressure: nothing along a flat face that rubs.
     of_pressure: Vector<D>,
-    /// Normal of a face with free slip.
+    /// Normal of a face with free slip, in a bend as the particle sees it.
     projection: Option<Vector<D>>,
+    bend: Option<Bend<D>>,
     /// eta c of the pair form.
     c: f64,
 }
@@ -163,7 +165,7 @@ impl<const D: usize> Solver<D> {
             }
             let reach = self.reach(state, pushing, w, (&x, r));
             let pressure = self.pressure_push(i, &reach.of_pressure);
-            let stress = self.stress_push(i, w, &reach);
+            let stress = self.stress_push(pushing, w, &x, &reach);
             let (leant, other) = self.other_push(state, pushing, w, (&x, r));
             let solved = add(&scale(by_stress, &stress), &leant);
             in_solve = add(&in_solve, &solved);
@@ -194,10 +196,12 @@ impl<const D: usize> Solver<D> {
             Some(n) if flat => scale(dot(&n, &g), &n),
             _ => g,
         };
+        let bend = projection.and_then(|n| self.bend_at(w, x, &n));
         Reach {
             g,
             of_pressure,
-            projection,
+            projection: bend.map(|b| b.normal).or(projection),
+            bend,
             c: -self.pair_viscosity[pushing.i] * 2.0 * (D as f64 + 2.0) / (vf * r * r),
         }
     }
@@ -211,13 +215,25 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// On particle i, over its volume, of stress: 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w).
-    fn stress_push(&self, i: usize, w: u32, reach: &Reach<D>) -> Vector<D> {
+    /// On a particle, over its volume, of stress: 2 P (tau g) - 2 share eta c (P g)(P g).(v - v_w), and what turns in bends.
+    fn stress_push(
+        &self,
+        pushing: &Pushing<D>,
+        w: u32,
+        x: &Vector<D>,
+        reach: &Reach<D>,
+    ) -> Vector<D> {
+        let i = pushing.i;
+        let tau = self.viscous.stress(i);
         let seen =
             |a: Vector<D>| -> Vector<D> { reach.projection.map_or(a, |n| scale(dot(&n, &a), &n)) };
-        let stress = scale(2.0, &seen(apply(&self.viscous.stress(i), &reach.g)));
+        let mut stress = scale(2.0, &seen(apply(&tau, &reach.g)));
+        if let (Some(bend), Some(row)) = (&reach.bend, pushing.seen) {
+            let turned = Self::bend_force(bend, &tau, (x, &reach.g), &row.lack);
+            stress = add(&stress, &turned);
+        }
         let pg = seen(reach.g);
-        let against = sub(&self.viscous.velocity[i], &self.walls.velocity[w as usize]);
+        let against = sub(&self.viscous.velocity[i], &self.wall_velocity_at(w, x));
         let drag = -2.0 * self.numerics.pair_viscosity_share * reach.c * dot(&pg, &against);
         add(&stress, &scale(drag, &pg))
     }

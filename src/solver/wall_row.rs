@@ -1,15 +1,16 @@
 //! Particle i against the wall points that it sees: sums of each face, then what they come to for the row (docs/theory.md, E14,
 //! W4, W5).
 //!
-//! Symbols: x = x_i - x_w, F = W'(r)/r <= 0, g = V_i w F x, v_w velocity of the point, n normal of its face towards the
-//! material, P = n n^T at free slip and 1 at no slip.
+//! Symbols: x = x_i - x_w, F = W'(r)/r <= 0, g = V_i w F x, v_w velocity of the point's wall where the particle is, n normal of its face
+//! towards the material, in bends of what the particle sees of it (`bend`), P = n n^T at free slip and 1 at no slip.
 
 use crate::material::{Friction as _, Material};
-use crate::math::{Tensor, Vector, add_outer, apply, dot, scale, sub, trace};
+use crate::math::{Tensor, Vector, add_outer, apply, dot, scale, skew, sub, trace};
 use crate::state::State;
 
 use super::Solver;
 use super::barrier::{Nearness, Rub};
+use super::bend::{Bend, Turning};
 use super::fluid_row::Row;
 use super::pair::WallRow;
 use super::wall_contact::{Contact, Face};
@@ -24,6 +25,12 @@ struct FaceSums<const D: usize> {
     /// Unit normal towards the material; 0 where neither slip nor fluid asks for it.
     normal: Vector<D>,
     free_slip: bool,
+    /// Where it is a bend with free slip.
+    bend: Option<Bend<D>>,
+    /// v_w of the last point.
+    velocity: Vector<D>,
+    /// -sum x (x) g.
+    around: Tensor<D>,
     /// sum g.
     s: Vector<D>,
     /// sum v_w (x) g.
@@ -41,11 +48,14 @@ struct FaceSums<const D: usize> {
 }
 
 impl<const D: usize> FaceSums<D> {
-    fn new(group: u16, normal: Vector<D>, free_slip: bool) -> Self {
+    fn new(group: u16, normal: Vector<D>, free_slip: bool, bend: Option<Bend<D>>) -> Self {
         Self {
             group,
             normal,
             free_slip,
+            bend,
+            velocity: [0.0; D],
+            around: [[0.0; D]; D],
             s: [0.0; D],
             carried: [[0.0; D]; D],
             pair: [[0.0; D]; D],
@@ -56,11 +66,29 @@ impl<const D: usize> FaceSums<D> {
         }
     }
 
+    /// Whether a point with this normal, in this bend, is one more of it.
+    #[inline(always)]
+    fn has(&self, group: u16, normal: &Vector<D>, bend: Option<&Bend<D>>) -> bool {
+        let same_bend = match (&self.bend, bend) {
+            (None, None) => true,
+            (Some(a), Some(b)) => a.is(b),
+            _ => false,
+        };
+        self.group == group && self.normal == *normal && same_bend
+    }
+
+    /// n of P.
+    #[inline(always)]
+    fn across(&self) -> &Vector<D> {
+        self.bend.as_ref().map_or(&self.normal, |b| &b.normal)
+    }
+
     /// P a.
     #[inline(always)]
     fn seen(&self, a: &Vector<D>) -> Vector<D> {
         if self.free_slip {
-            scale(dot(&self.normal, a), &self.normal)
+            let n = self.across();
+            scale(dot(n, a), n)
         } else {
             *a
         }
@@ -109,6 +137,7 @@ impl<const D: usize> Solver<D> {
         let mut flatness = Face::None;
         let mut face: Option<FaceSums<D>> = None;
         let mut nearest2 = f64::INFINITY;
+        let mut turning = Turning::NONE;
         for &wall in near {
             let x = self
                 .periodic
@@ -122,19 +151,27 @@ impl<const D: usize> Solver<D> {
             let normal = self.face_normal(xi, wall, is_fluid, face.as_ref(), state);
             let group = self.walls.group[wall as usize];
             let spec = &self.walls.groups[group as usize];
+            let bend = if spec.free_slip {
+                self.bend_at(wall, &x, &normal)
+            } else {
+                None
+            };
             if face
                 .as_ref()
-                .is_none_or(|f| f.group != group || f.normal != normal)
+                .is_none_or(|f| !f.has(group, &normal, bend.as_ref()))
             {
-                let next = FaceSums::new(group, normal, spec.free_slip);
+                let next = FaceSums::new(group, normal, spec.free_slip, bend);
                 if let Some(done) = face.replace(next) {
+                    self.add_turn(&done, &mut w, &mut turning);
                     flatness = self.add_face(&done, i, (contacts, first_contact), &mut w, flatness);
                 }
             }
             let Some(face) = &mut face else { continue };
             let vf = self.wall_volume(i, wall, weight) * self.kernel.f(r2.sqrt());
             let g = scale(vf, &x);
-            let vw = &self.walls.velocity[wall as usize];
+            let vw = &self.wall_velocity_at(wall, &x);
+            face.velocity = *vw;
+            add_outer(&mut face.around, -1.0, &x, &g);
             face.add(&g, 2.0 * dissipation / (-vf * r2), vw);
             if is_fluid {
                 add_outer(&mut face.moment, -vf, &x, &x);
@@ -160,6 +197,10 @@ impl<const D: usize> Solver<D> {
             sums.speed2 = sums.speed2.max(dot(&v, &v));
         }
         let last = face?;
+        self.add_turn(&last, &mut w, &mut turning);
+        if !self.geometry.is_axisymmetric() {
+            turning.complete(&sums.moment, &mut w);
+        }
         let flatness = self.add_face(&last, i, (contacts, first_contact), &mut w, flatness);
         if nearest2 < (CLEAR * self.numerics.spacing).powi(2) {
             let nearness = self.nearness(xi, vi, near, material);
@@ -219,7 +260,7 @@ impl<const D: usize> Solver<D> {
         w: &mut WallRow<D>,
         flatness: Face<D>,
     ) -> Face<D> {
-        let n = &face.normal;
+        let n = face.across();
         for a in 0..D {
             w.s[a] += face.s[a];
             w.cv[a] += face.dragged[a];
@@ -241,6 +282,7 @@ impl<const D: usize> Solver<D> {
         if self.wall_moves(face.group) {
             w.drive += trace(&face.carried);
         }
+        let n = &face.normal;
         if face.lean > 0.0 {
             for a in 0..D {
                 w.lean[a][a] += face.lean;
@@ -254,7 +296,20 @@ impl<const D: usize> Solver<D> {
         let area = to_area * dot(&face.s, n);
         let drive = scale(to_area, &apply(&face.carried, n));
         Contact::gather(contacts, first, (i, face.group), n, area, &drive);
-        flatness.with(Some(*n))
+        flatness.with(face.bend.is_none().then_some(*n))
+    }
+
+    /// Adds what turns with a face to the row: the rotation that a bend makes of sliding, and the wall's own.
+    #[inline(always)]
+    fn add_turn(&self, face: &FaceSums<D>, w: &mut WallRow<D>, turning: &mut Turning<D>) {
+        let spin = &self.walls.groups[face.group as usize].spin;
+        if let Some(bend) = &face.bend {
+            w.add_bend(&bend.rate, &face.around, &face.velocity);
+        }
+        turning.add(face.bend.as_ref(), spin, &face.around, &face.velocity);
+        if *spin != [0.0; 3] {
+            w.add_spin(&skew(spin), &face.around);
+        }
     }
 
     /// What (W5) is made of: sums over all wall points near a particle at xi, moving at vi.
@@ -309,6 +364,7 @@ impl<const D: usize> WallRow<D> {
             moment: [[0.0; D]; D],
             moment_drive: [0.0; D],
             carried: [0.0; D],
+            lack: [[0.0; D]; D],
             images: (0, 0),
             reflections: (0, 0),
         }

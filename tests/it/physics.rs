@@ -5,6 +5,7 @@
 
 mod acoustic_steps;
 mod axisymmetric;
+mod bends;
 mod chutes;
 mod collapse;
 mod conservation;

@@ -2,7 +2,7 @@
 
 use crate::boundary::{
     End, GroupSpec, Mover, ROWS, RigidMotion, WallPoints, box_points, free_ends, joined_points,
-    plane_points, tip_points,
+    plane_points, tip_points, to_centres,
 };
 use crate::math::{norm, scale};
 use crate::solver::Periodic;
@@ -17,9 +17,11 @@ pub(super) fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> Wa
     let dp = scene.numerics.spacing;
     let mut points = WallPoints::default();
     for (n, wall) in scene.walls.iter().enumerate() {
-        points
-            .groups
-            .push(group(scene, wall.slip, wall.rigid, ForceTarget::Wall(n)));
+        let motion = rigid_motion::<D>(&wall.velocity, wall.rotation.as_ref());
+        points.groups.push(GroupSpec {
+            spin: motion.spin(),
+            ..group(scene, wall.slip, wall.rigid, ForceTarget::Wall(n))
+        });
         match &wall.geometry {
             WallGeometry::Polyline {
                 points: corners,
@@ -68,7 +70,13 @@ fn add_polyline<const D: usize>(
     let group = wall as u16;
     let wide = |x: [f64; 2]| narrow(&[x[0], x[1], 0.0]);
     let joints = joints(scene, wall);
-    for (x, normal, weight) in joined_points(corners, closed, joints, dp) {
+    let rows = joined_points(corners, closed, joints, dp);
+    let bends = to_centres(corners, closed, joints, &rows, dp);
+    if bends.iter().any(|to| *to != [0.0; 2]) {
+        points.to_centre.resize(points.len(), [0.0; D]);
+        points.to_centre.extend(bends.into_iter().map(wide));
+    }
+    for (x, normal, weight) in rows {
         points.push(wide(x), narrow(velocity), wide(normal), weight, group);
     }
     if closed || *rigid {
@@ -147,6 +155,7 @@ pub(in crate::scene) fn group(
         friction: slip.friction(),
         moves,
         wants_force,
+        spin: [0.0; 3],
     }
 }
 

@@ -30,6 +30,7 @@ fn on_floor(
         friction: 0.0,
         moves: false,
         wants_force: false,
+        spin: [0.0; 3],
     });
     let (mut solver, mut state) =
         disordered_on::<2>(clay(), Geometry::Planar { width: 0.3 }, 20, floor);
@@ -72,6 +73,7 @@ fn acoustic_steps_have_the_steps_own_divergence_beside_walls() {
             friction: 0.0,
             moves: false,
             wants_force: false,
+            spin: [0.0; 3],
         });
     }
     let plane = Geometry::Planar { width: 0.3 };
