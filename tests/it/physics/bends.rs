@@ -64,10 +64,16 @@ fn a_smooth_drum_does_not_brake_what_turns_in_it() {
     let sand =
         "law = \"constant_friction\"\nfriction_angle = \"30 deg\"\ncohesion = 100\ndensity = 1500";
     let turning = format!("motion = \"rigid\"\nangular_velocity = {RATE}\ncentre = [0, 0]");
-    for (material, motion) in [(BEADS, ""), (BEADS, turning.as_str()), (sand, "")] {
+    // With normals of their own its sides left 0.902, 0.886 and 0.865 of it.
+    let scenes = [
+        (BEADS, "", 0.03),
+        (BEADS, turning.as_str(), 0.02),
+        (sand, "", 0.08),
+    ];
+    for (material, motion, most) in scenes {
         let left = kept(material, &format!("slip = \"free_slip\"\n{motion}"), 0.1);
         println!("{left:.4} of the energy after two radians");
-        assert!((left - 1.0).abs() < 0.03);
+        assert!((left - 1.0).abs() < most);
     }
 }
 
@@ -78,6 +84,6 @@ fn a_drum_carries_sand_as_fast_as_itself() {
             format!("{slip}\nmotion = \"rigid\"\nangular_velocity = {RATE}\ncentre = [0, 0]");
         let left = kept(BEADS, &drum, 0.1);
         println!("{left:.4} of the energy after two radians");
-        assert!((left - 1.0).abs() < 0.02);
+        assert!((left - 1.0).abs() < 0.01);
     }
 }
