@@ -1,11 +1,11 @@
-//! Fluids at flat walls with free slip in space: along the face they go on as their mirror image (docs/theory.md, W10).
+//! Fluids at flat walls with free slip in space: along the face they go on as their mirror image (docs/theory.md, W11).
 //!
 //! A point of such a face gives nothing along itself. In the plane that is all there is to shear; in space what is sheared along the
 //! face, as a layer on a bed between side walls, has half of its neighbours there: the first rows saw 0.65 of their strain and took as
 //! little of the stress, and a bed's own points, which are whole beside the side wall, took more than came down to them. Images give what
 //! lacks,
 //!
-//!   G_i += sum_j P (v_j - v_i) (x) P g'_ij,   F_i += V_i sum_j P (tau_i + tau_j) P g'_ij,   P = I - n n^T           (W10)
+//!   G_i += sum_j P (v_j - v_i) (x) P g'_ij,   F_i += V_i sum_j P (tau_i + tau_j) P g'_ij,   P = I - n n^T           (W11)
 //!   g'_ij = V_j F' (x_i - x_j'),   x_j' = x_j - 2 d_j n the image, d the distance from the face
 //!
 //! and of the pair form -V_i s_p sum_j eta_ij 2 (D + 2) |F'| V_j t (t . (v_i - v_j))/r'^2, t = P (x_i - x_j). F is the adjoint of G and

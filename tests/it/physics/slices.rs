@@ -56,7 +56,7 @@ fn wall(name: &str) -> String {
     format!("[walls.{name}]\nplane = {{ point = {point}, normal = {normal} }}\nslip = \"{slip}\"\n")
 }
 
-/// Without their images in the side walls (docs/theory.md, W10) layers lose a third of their viscosity at such a width.
+/// Without their images in the side walls (docs/theory.md, W11) layers lose a third of their viscosity at such a width.
 #[test]
 fn a_slice_between_smooth_walls_flows_as_the_plane() {
     let plane = energy(&[]);
