@@ -12,7 +12,7 @@ fn energy(walls: &[&str]) -> f64 {
     };
     let [below, above, from, to] = third;
     let tables: String = match walls {
-        [] => "[walls.bed]\npolyline = [[0, 0], [0.03, 0]]\n".to_owned(),
+        [] => "[walls.bed]\npolyline = [[0, 0], [0.04, 0]]\n".to_owned(),
         _ => walls.iter().map(|w| wall(w)).collect(),
     };
     let text = format!(
@@ -21,7 +21,7 @@ name = "slice"
 dimension = {dimension}
 [domain]
 lower = [0, {below} -0.04]
-upper = [0.03, {above} 0.08]
+upper = [0.04, {above} 0.08]
 gravity = [1.466, {from} -9.7]
 periodic = ["x"]
 [numerics]
@@ -33,7 +33,7 @@ consistency = 2
 yield_stress = 20
 [bodies.layer]
 material = "mud"
-box = {{ lower = [0, {from} 0], upper = [0.03, {to} 0.03] }}
+box = {{ lower = [0, {from} 0], upper = [0.04, {to} 0.03] }}
 {tables}
 [run]
 step = 0.05
