@@ -23,7 +23,7 @@ pub struct Bagnold {
 
 impl Bagnold {
     /// For a depth H > 0 [m], gravity across the layer g_n > 0 and along it [m/s^2]; `None` where nothing flows (the slope
-    /// is not above the angle of rest), nothing is steady (it is too steep), or there is no such profile (cohesion, or water in the pores, which bears and moves with them).
+    /// is not above that of mu(0)), nothing is steady (it is too steep), or there is no such profile (cohesion, or water in the pores, which bears and moves with them).
     #[must_use]
     pub fn new(
         material: &Material,
@@ -72,7 +72,8 @@ impl Bagnold {
 /// The I with mu(I) = tan, by bisection of a law that grows with I.
 fn inertial_number_at(material: &Material, tan: f64) -> Option<f64> {
     let (mut low, mut high) = (0.0, MOST);
-    if tan <= material.law.static_friction() || tan >= material.law.friction(high) {
+    // mu(0) is that of grains at rest or, of a law without a yield stress, 0.
+    if tan <= material.law.friction(0.0) || tan >= material.law.friction(high) {
         return None;
     }
     // Halving the interval ends at two neighbouring numbers.

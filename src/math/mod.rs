@@ -58,6 +58,13 @@ pub fn scale<const D: usize>(s: f64, a: &Vector<D>) -> Vector<D> {
     std::array::from_fn(|k| s * a[k])
 }
 
+/// What of a lies along a face with unit normal n: a - (n.a) n.
+#[inline(always)]
+#[must_use]
+pub fn along<const D: usize>(n: &Vector<D>, a: &Vector<D>) -> Vector<D> {
+    sub(a, &scale(dot(n, a), n))
+}
+
 /// Euclidean norm.
 #[inline(always)]
 #[must_use]

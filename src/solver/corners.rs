@@ -5,8 +5,10 @@
 //! the dual vectors m of the normals: m_A.n_A = 1, m_A.n_B = 0. Counted to one wall alone, the other's thrust lacks 0.3 dp of the
 //! pressure at its foot.
 //!
-//! Fluids only. Pressure also pushes points beside a corner along their own face, away from it, and with what lies behind the corner that adds up to
-//! nothing; without that a face would bear along itself what is not friction. Fluids have none, and (W7) carries their weight.
+//! So it is of fluids. Pressure also pushes points beside a corner along their own face, away from it, and with what lies behind the corner that
+//! adds up to nothing; without that a face bears along itself what (W7) carries of a fluid's weight. Of grains, whose walls have nothing to carry,
+//! each face gets the corner's push along itself instead: A what lies along n_B, and B what lies along n_A. Then no face bears
+//! along itself what is not friction, and across itself each what balances the rest. Points of a wall that rubs keep theirs (`reactions`).
 //!
 //! Symbols: n unit normals towards the material, dp spacing.
 
@@ -29,6 +31,36 @@ pub(super) struct Push<const D: usize> {
     pub impulse: Vector<D>,
 }
 
+/// A point's push as two faces have it, that of the point, A, and another one, B.
+pub(super) struct Corner<const D: usize> {
+    /// Part of it that is a corner's, and of that A parts with to B [1].
+    share: f64,
+    others: f64,
+    /// n_A and m_A, n_B and m_B.
+    own: [Vector<D>; 2],
+    other: [Vector<D>; 2],
+}
+
+impl<const D: usize> Corner<D> {
+    /// (f.m_B) n_B.
+    pub(super) fn across(&self, f: &Vector<D>) -> Vector<D> {
+        scale(self.share * dot(&self.other[1], f), &self.other[0])
+    }
+
+    /// (f.m_A) n_A, along B; where B is one of several, its share of it.
+    pub(super) fn along(&self, f: &Vector<D>) -> Vector<D> {
+        scale(
+            self.share / self.others * dot(&self.own[1], f),
+            &self.own[0],
+        )
+    }
+}
+
+/// What B bears of a fluid's push on a point of A.
+pub(super) fn across<const D: usize>(corner: &Corner<D>, point: &Push<D>) -> Vector<D> {
+    corner.across(&point.impulse)
+}
+
 /// A face as one particle sees it.
 struct Face<const D: usize> {
     group: u16,
@@ -43,8 +75,13 @@ impl<const D: usize> Face<D> {
     }
 }
 
-/// Hands on what points behind two faces bear to the walls that it belongs to. What one particle pushes stays the same in sum.
-pub(super) fn part_at_corners<const D: usize>(pushes: &mut Vec<Push<D>>, spacing: f64) {
+/// Hands on what points behind two faces bear to the walls that it belongs to, `part` of it to B. What one particle pushes stays the
+/// same in sum.
+pub(super) fn part_at_corners<const D: usize>(
+    pushes: &mut Vec<Push<D>>,
+    spacing: f64,
+    part: impl Fn(&Corner<D>, &Push<D>) -> Vector<D>,
+) {
     let faces = faces(pushes);
     let shares = shares(&faces, pushes, spacing);
     for n in 0..pushes.len() {
@@ -59,13 +96,20 @@ pub(super) fn part_at_corners<const D: usize>(pushes: &mut Vec<Push<D>>, spacing
                 keep_best(&mut met, (*share, face));
             }
         }
+        let own = dual(&push.normal, met.iter().map(|(_, f)| f.normal));
         for (k, (share, face)) in met.iter().enumerate() {
             let others = met.iter().enumerate().filter(|(m, _)| *m != k);
             let others = std::iter::once(push.normal).chain(others.map(|(_, (_, f))| f.normal));
-            let Some(dual) = dual(&face.normal, others) else {
+            let (Some(own), Some(other)) = (own, dual(&face.normal, others)) else {
                 continue;
             };
-            let impulse = scale(share * dot(&dual, &push.impulse), &face.normal);
+            let corner = Corner {
+                share: *share,
+                others: met.len() as f64,
+                own: [push.normal, own],
+                other: [face.normal, other],
+            };
+            let impulse = part(&corner, &push);
             pushes[n].impulse = sub(&pushes[n].impulse, &impulse);
             pushes.push(Push {
                 group: face.group,
@@ -202,7 +246,7 @@ mod tests {
         let gate = (0..6).flat_map(|a| (-4..0).map(move |b| (1, [0.0, 1.0], [place(a), place(b)])));
         let before = pushes([0.5 * DP, 0.5 * DP], floor.chain(gate));
         let mut after = before.clone();
-        part_at_corners(&mut after, DP);
+        part_at_corners(&mut after, DP, across);
         for group in 0..2 {
             assert_eq!(sum(&after, |g| g == group), sum(&before, |g| g == group));
         }
@@ -213,7 +257,7 @@ mod tests {
         let x = [0.5 * DP, 0.5 * DP];
         let before = pushes(x, sluice(0.0));
         let mut after = before.clone();
-        part_at_corners(&mut after, DP);
+        part_at_corners(&mut after, DP, across);
         let under = before.iter().filter(|p| p.group == 0 && p.to[0] < -x[0]);
         let handed = under.fold(0.0, |sum, p| sum + p.impulse[0]);
         let gate = sum(&after, |g| g == 1);
@@ -229,7 +273,7 @@ mod tests {
     fn a_gate_that_is_lifted_by_a_row_has_no_corner() {
         let at = |lift| {
             let mut pushes = pushes([0.5 * DP, 0.5 * DP], sluice(lift));
-            part_at_corners(&mut pushes, DP);
+            part_at_corners(&mut pushes, DP, across);
             sum(&pushes, |g| g == 0)[0]
         };
         let alone = sum(&pushes([0.5 * DP, 0.5 * DP], sluice(1.0)), |g| g == 0)[0];
@@ -252,6 +296,23 @@ mod tests {
         assert!(norm(&sub(&whole, &push)) < 1e-12);
     }
 
+    /// Of grains: what the floor has of the corner and presses up is the gate's, and the floor bears nothing along itself but for the
+    /// gate's own points.
+    #[test]
+    fn what_grains_push_at_a_corner_goes_along_each_wall() {
+        let before = pushes([0.5 * DP, 0.5 * DP], sluice(0.0));
+        let mut after = before.clone();
+        part_at_corners(&mut after, DP, |corner, point| corner.along(&point.impulse));
+        let (floor, gate) = (sum(&after, |g| g == 0), sum(&after, |g| g == 1));
+        let under = before
+            .iter()
+            .filter(|p| p.group == 0 && p.to[0] < -0.5 * DP);
+        let up = under.fold(0.0, |sum, p| sum + p.impulse[1]);
+        assert!(up > 1.0, "{up}");
+        assert_eq!(floor[0], sum(&before, |g| g == 0)[0]);
+        assert!((gate[1] - sum(&before, |g| g == 1)[1] - up).abs() < 1e-9 * up);
+    }
+
     #[test]
     fn faces_that_go_on_from_each_other_keep_their_own() {
         let place = |k: i32| (f64::from(k) + 0.5) * DP;
@@ -260,7 +321,7 @@ mod tests {
         });
         let before = pushes([0.02, 0.05], floors);
         let mut after = before.clone();
-        part_at_corners(&mut after, DP);
+        part_at_corners(&mut after, DP, across);
         assert_eq!(after.len(), before.len());
     }
 }

@@ -8,7 +8,7 @@ use crate::state::State;
 
 use super::Solver;
 use super::fluid_row::Row;
-use super::meeting::KINDS;
+use super::meeting::{KINDS, SOFTER};
 use super::mirror::add_image_gradient;
 use super::pair::Block;
 use super::record::Record;
@@ -117,10 +117,11 @@ impl<const D: usize> Solver<D> {
                 (&near[..count], kinds),
             );
             let mut alone = kinds[0] == count / LANES;
+            let meets_fluid = kinds[SOFTER as usize - 1] < count / LANES;
             if !block.wall_row(row).is_empty()
                 && let Some(mut w) = self.wall_row(
                     state,
-                    (i, row),
+                    (i, row, meets_fluid),
                     block.wall_row(row),
                     &mut sums,
                     &mut contacts,

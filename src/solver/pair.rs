@@ -39,11 +39,12 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) lean: Tensor<D>,
     /// What images take from it.
     pub(super) lean_less: Tensor<D>,
-    /// L of (W7) before it is bounded: sum |F| V x x^T, the points' part of M, of fluids; else 0.
+    /// L of (W7) before it is bounded: sum |F| V x x^T, the points' part of M, of fluids; of grains that bear a fluid with x along
+    /// each smooth face (W10); else 0.
     pub(super) moment: Tensor<D>,
-    /// sum |F| V x (x.v_w) of fluids, v_w the points' velocity; else 0.
+    /// sum |F| V x (x.v_w) of the same, v_w the points' velocity; else 0.
     pub(super) moment_drive: Vector<D>,
-    /// a* - g of (W7) in this step, times what of L is kept [m/s^2].
+    /// a* - g of (W7) in this step, or a_q of (W10), times what of L is kept [m/s^2].
     pub(super) carried: Vector<D>,
     /// Of bends and turning walls: what M lacks of the identity, over the trace of the walls' part of it; else 0.
     pub(super) lack: Tensor<D>,

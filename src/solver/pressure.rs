@@ -6,11 +6,11 @@
 //! tensor P of (F3) where a fluid's rows slide.
 
 use crate::material::Material;
-use crate::math::{Quad, Tensor, Vector, apply, in_lanes};
+use crate::math::{Quad, Tensor, Vector, apply, in_lanes, trace};
 use crate::state::State;
 
 use super::Solver;
-use super::pair::WallRow;
+use super::pair::{Block, WallRow};
 
 /// Weight of |div v| against the shear rate in the share of the made-up viscosity that a particle feels [1]: a plane wave has both.
 const DAMPED: f64 = 4.0;
@@ -68,7 +68,8 @@ impl<const D: usize> Solver<D> {
                 let mut rows = std::mem::take(&mut block.wall_rows);
                 for w in &mut rows {
                     let row = w.row as usize;
-                    self.press_on_walls(state, dt, first + row, w, &mut out[row]);
+                    let at = (first + row, row);
+                    self.press_on_walls(state, dt, at, (block, w), &mut out[row]);
                 }
                 block.wall_rows = rows;
             });
@@ -83,8 +84,8 @@ impl<const D: usize> Solver<D> {
         &self,
         state: &State<D>,
         dt: f64,
-        i: usize,
-        w: &mut WallRow<D>,
+        (i, row): (usize, usize),
+        (block, w): (&Block<D>, &mut WallRow<D>),
         o: &mut Prediction<D>,
     ) {
         let p = self.normal_pressure()[i];
@@ -99,8 +100,14 @@ impl<const D: usize> Solver<D> {
                 o.velocity[k] += 2.0 * dt * self.specific_volume(state, i) * less[k];
             }
         }
-        if self.has_fluids {
-            self.carry_slope(&state.grains.velocity[i], dt, w, &mut o.velocity);
+        if trace(&w.moment) > 0.0 {
+            let before = &state.grains.velocity[i];
+            let slope = if self.material_of(state, i).is_fluid() {
+                self.slope_of_fluid(before, &o.velocity, dt)
+            } else {
+                self.slope_in_grains(state, block, (i, row))
+            };
+            self.carry_slope(&slope, before, dt, w, &mut o.velocity);
         }
         if w.barrier > 0.0 {
             for k in 0..D {

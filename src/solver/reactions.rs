@@ -1,12 +1,12 @@
 //! Forces on walls: what every particle hands to the points that it sees, and whose it is where walls meet (docs/theory.md, "Forces
 //! on walls").
 
-use crate::math::{CHUNK, Vector, add, apply, dot, norm, scale, sub};
+use crate::math::{CHUNK, Vector, add, along, apply, dot, norm, scale, sub};
 use crate::state::State;
 
 use super::Solver;
 use super::bend::Bend;
-use super::corners::{Push, part_at_corners};
+use super::corners::{Push, across, part_at_corners};
 use super::pair::WallRow;
 use super::seams::{OF_FLUIDS, share_at_seams};
 
@@ -93,10 +93,18 @@ impl<const D: usize> Solver<D> {
             return;
         }
         let spacing = self.numerics.spacing;
-        let is_fluid = self.material_of(state, i).is_fluid();
         let by_stress = self.by_stress(i, dt);
-        let sticks = |p: &Push<D>| !self.walls.groups[p.group as usize].free_slip;
-        let sheared = !is_fluid && pushes.iter().all(sticks);
+        if self.material_of(state, i).is_fluid() {
+            let push = |g: &Vector<D>| scale(by_stress, &self.pressure_push(i, g));
+            share_at_seams(pushes, push, OF_FLUIDS, spacing);
+            part_at_corners(pushes, spacing, across);
+            return;
+        }
+        let sheared = pushes
+            .iter()
+            .all(|p| !self.walls.groups[p.group as usize].free_slip);
+        // Pores push as fluids do.
+        let in_pores = |g: &Vector<D>| scale(-2.0 * by_stress * self.pore_pressure(state, i), g);
         let push = |g: &Vector<D>| {
             let pressed = self.pressure_push(i, g);
             let stress = scale(2.0, &apply(&self.viscous.stress(i), g));
@@ -105,17 +113,18 @@ impl<const D: usize> Solver<D> {
             } else {
                 pressed
             };
-            scale(by_stress, &whole)
+            sub(&scale(by_stress, &whole), &in_pores(g))
         };
-        share_at_seams(
-            pushes,
-            push,
-            if is_fluid { OF_FLUIDS } else { 1.0 },
-            spacing,
-        );
-        if is_fluid {
-            part_at_corners(pushes, spacing);
-        }
+        share_at_seams(pushes, push, 1.0, spacing);
+        share_at_seams(pushes, in_pores, OF_FLUIDS, spacing);
+        part_at_corners(pushes, spacing, |corner, point| {
+            let pores = in_pores(&corner.across(&point.reach));
+            // What rubs does so with all that its points press.
+            if self.walls.groups[point.group as usize].friction > 0.0 {
+                return pores;
+            }
+            add(&push(&corner.along(&point.reach)), &pores)
+        });
     }
 
     /// Impulse over a push over a particle's volume [m^3 s].
@@ -238,7 +247,7 @@ impl<const D: usize> Solver<D> {
         add(&stress, &scale(drag, &pg))
     }
 
-    /// Impulse on the particle of what is not a stress: each point's part of K (W4), as the solve has it, and of L (W7) and of (W5), as they were counted.
+    /// Impulse on the particle of what is not a stress: each point's part of K (W4), as the solve has it, and of L (W7, W10) and of (W5), as they were counted.
     fn other_push(
         &self,
         state: &State<D>,
@@ -257,12 +266,17 @@ impl<const D: usize> Solver<D> {
         let vf = self.wall_volume(i, w, weight) * self.kernel.f(r);
         if self.has_fluids && self.wall_projection(xi, w, state).is_none() {
             let n = self.wall_normal(xi, w, state);
-            let along = sub(&pushing.leant, &scale(dot(&n, &pushing.leant), &n));
-            leant = scale(-vf * dot(&n, x).powi(2), &along);
+            leant = scale(-vf * dot(&n, x).powi(2), &along(&n, &pushing.leant));
         }
         if seen.carried != [0.0; D] {
-            let share = -vf * dt * mass * dot(x, &seen.carried);
-            part = add(&part, &scale(share, x));
+            let carries = if self.material_of(state, i).is_fluid() {
+                *x
+            } else {
+                let projection = self.wall_projection(xi, w, state);
+                projection.map_or([0.0; D], |n| along(&n, x))
+            };
+            let share = -vf * dt * mass * dot(&carries, &seen.carried);
+            part = add(&part, &scale(share, &carries));
         }
         if seen.barrier > 0.0 {
             let mut away = self.barrier.slope(x, r, weight);

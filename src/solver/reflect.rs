@@ -14,7 +14,7 @@
 //! Grains do without: their pressure along a face is that of points, which know nothing of its slope, and shear stress that went on
 //! beside it would be too much for it.
 
-use crate::math::{Tensor, Vector, add_outer, apply, dot, norm, scale, sub};
+use crate::math::{Tensor, Vector, add_outer, along, apply, dot, norm, sub};
 use crate::state::State;
 
 use super::Solver;
@@ -50,14 +50,6 @@ pub(super) struct Reflection<const D: usize> {
     weight: f64,
     /// 2 (D + 2) V_j |F'|/r'^2 [1/m^4].
     by_pairs: f64,
-}
-
-impl<const D: usize> Reflection<D> {
-    /// P a.
-    #[inline(always)]
-    fn along(&self, a: &Vector<D>) -> Vector<D> {
-        sub(a, &scale(dot(a, &self.normal), &self.normal))
-    }
 }
 
 impl<const D: usize> Solver<D> {
@@ -179,7 +171,7 @@ impl<const D: usize> Solver<D> {
         if (up - (own.distance - other.distance)).abs() > LEVEL * self.numerics.spacing {
             return None;
         }
-        let along: Vector<D> = std::array::from_fn(|k| offset[k] - up * normal[k]);
+        let along = along(&normal, offset);
         let r = norm(&along).hypot(own.distance + other.distance);
         if r >= self.kernel.support() {
             return None;
@@ -204,7 +196,7 @@ pub(super) fn add_reflected_gradient<const D: usize>(
     gradient: &mut Tensor<D>,
 ) {
     for image in reflections {
-        let d = image.along(&sub(&v[image.j as usize], &v[i]));
+        let d = along(&image.normal, &sub(&v[image.j as usize], &v[i]));
         add_outer(gradient, image.weight, &d, &image.along);
     }
 }
@@ -223,7 +215,7 @@ pub(super) fn reflected_force<const D: usize>(
             apply(&stress(image.j as usize), &image.along),
         );
         let both: Vector<D> = std::array::from_fn(|k| a[k] + b[k]);
-        let both = image.along(&both);
+        let both = along(&image.normal, &both);
         for k in 0..D {
             f[k] += image.weight * both[k];
         }

@@ -5,7 +5,7 @@
 //! towards the material, in bends of what the particle sees of it (`bend`), P = n n^T at free slip and 1 at no slip.
 
 use crate::material::{Friction as _, Material};
-use crate::math::{Tensor, Vector, add_outer, apply, dot, scale, skew, sub, trace};
+use crate::math::{Tensor, Vector, add_outer, along, apply, dot, scale, skew, sub, trace};
 use crate::state::State;
 
 use super::Solver;
@@ -41,9 +41,9 @@ struct FaceSums<const D: usize> {
     dragged: Vector<D>,
     /// sum |F| V (n.x)^2 of fluids without slip; else 0.
     lean: f64,
-    /// sum |F| V x x^T of fluids; else 0.
+    /// sum |F| V x x^T of fluids, of x along the face of grains that bear a fluid (W7); else 0.
     moment: Tensor<D>,
-    /// sum |F| V x (x.v_w) of fluids; else 0.
+    /// sum |F| V x (x.v_w) of the same; else 0.
     moment_drive: Vector<D>,
 }
 
@@ -94,6 +94,16 @@ impl<const D: usize> FaceSums<D> {
         }
     }
 
+    /// Adds |F| V x x^T of `weight` = |F| V.
+    #[inline(always)]
+    fn add_moment(&mut self, weight: f64, x: &Vector<D>, vw: &Vector<D>) {
+        add_outer(&mut self.moment, weight, x, x);
+        let drive = weight * dot(x, vw);
+        for k in 0..D {
+            self.moment_drive[k] += drive * x[k];
+        }
+    }
+
     /// Adds a point; `c` is 2 (D + 2)/(|g| r).
     #[inline(always)]
     fn add(&mut self, g: &Vector<D>, c: f64, vw: &Vector<D>) {
@@ -115,13 +125,13 @@ impl<const D: usize> FaceSums<D> {
 
 impl<const D: usize> Solver<D> {
     /// Adds to the sums of row i what the wall points `near` it give, and to `contacts` the faces with friction; `None` where
-    /// there is no wall within the support.
+    /// there is no wall within the support. `meets_fluid`: whether it is of grains and has fluids among its neighbours.
     // Within the sweep, so that the compiler may use the lanes' instructions here too.
     #[inline(always)]
     pub(super) fn wall_row(
         &self,
         state: &State<D>,
-        (i, row): (usize, usize),
+        (i, row, meets_fluid): (usize, usize, bool),
         near: &[u32],
         sums: &mut Row<D>,
         contacts: &mut Vec<Contact<D>>,
@@ -133,6 +143,7 @@ impl<const D: usize> Solver<D> {
         let dissipation = D as f64 + 2.0;
         let material = &self.materials[grains.phase[i] as usize];
         let is_fluid = material.is_fluid();
+        let bears_fluid = meets_fluid || (self.has_pores && !is_fluid);
         let mut w = WallRow::new(row as u32);
         let mut flatness = Face::None;
         let mut face: Option<FaceSums<D>> = None;
@@ -174,14 +185,12 @@ impl<const D: usize> Solver<D> {
             add_outer(&mut face.around, -1.0, &x, &g);
             face.add(&g, 2.0 * dissipation / (-vf * r2), vw);
             if is_fluid {
-                add_outer(&mut face.moment, -vf, &x, &x);
-                let drive = -vf * dot(&x, vw);
-                for k in 0..D {
-                    face.moment_drive[k] += drive * x[k];
-                }
+                face.add_moment(-vf, &x, vw);
                 if !face.free_slip {
                     face.lean -= vf * dot(&normal, &x).powi(2);
                 }
+            } else if bears_fluid && face.free_slip {
+                face.add_moment(-vf, &along(&normal, &x), vw);
             }
             add_outer(&mut sums.moment, -1.0, &x, &g);
             for (side, g) in sums.side.iter_mut().zip(&g) {

@@ -14,6 +14,7 @@ mod films;
 mod gates;
 mod gliding;
 mod incline;
+mod layers;
 mod leaks;
 mod lips;
 mod meeting;

@@ -6,7 +6,7 @@ use crate::math::dot;
 use crate::scene::types::{Body, NamedMaterial, VelocityProfile};
 
 impl Lift<'_> {
-    /// Bagnold's profile needs a box, a bed along an axis and a slope between the material's friction angles.
+    /// Bagnold's profile needs a box, a bed along an axis and a slope between the friction angles of mu(0) and of fast flow.
     pub(super) fn check_velocity_profiles(
         &mut self,
         materials: &[Option<NamedMaterial>],
@@ -64,7 +64,7 @@ impl Lift<'_> {
                 format!(
                     "a slope steeper than the angle of rest of {}, {}, at which its friction balances the weight; no cohesion and no pore_fluid",
                     named.name,
-                    degrees(material.law.static_friction()),
+                    degrees(material.law.friction(0.0)),
                 ),
                 "correct the material, domain.slope or domain.gravity, or delete velocity_profile",
             );

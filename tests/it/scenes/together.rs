@@ -155,3 +155,48 @@ until = 1
         "{said}"
     );
 }
+
+/// Below its static angle too: mu(0) of this law is 0.
+#[test]
+fn bagnolds_flow_is_wherever_the_law_has_one() {
+    let read = |law: &str, slope: &str| {
+        let text = format!(
+            r#"
+name = "slope"
+[domain]
+lower = [0, -0.1]
+upper = [0.2, 0.2]
+periodic = ["x"]
+slope = "{slope}"
+[numerics]
+spacing = 0.01
+[materials.beads]
+law = "{law}"
+preset = "glass_beads"
+[bodies.layer]
+material = "beads"
+box = {{ lower = [0, 0], upper = [0.2, 0.1] }}
+velocity_profile = "bagnold"
+[walls.bed]
+polyline = [[0, 0], [0.2, 0]]
+[run]
+step = 0.02
+until = 1
+"#
+        );
+        scene::parse("slope", &text).map_err(|e| e.to_string())
+    };
+    for slope in ["5 deg", "20.5 deg", "25 deg"] {
+        assert!(read("barker_gray", slope).is_ok(), "{slope}");
+    }
+    let said = read("barker_gray", "0 deg").unwrap_err();
+    assert!(
+        said.contains("the angle of rest of beads, 0.00 deg"),
+        "{said}"
+    );
+    let said = read("mu_i", "20.5 deg").unwrap_err();
+    assert!(
+        said.contains("the angle of rest of beads, 20.90 deg"),
+        "{said}"
+    );
+}
