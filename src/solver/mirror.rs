@@ -24,8 +24,8 @@ use super::Solver;
 use super::pair::Block;
 
 /// Most that normals differ, and distances over the spacing, where a face counts as flat [1].
-const FLAT: f64 = 1e-6;
-const LEVEL: f64 = 1e-3;
+pub(super) const FLAT: f64 = 1e-6;
+pub(super) const LEVEL: f64 = 1e-3;
 
 /// A flat face as a particle sees it.
 #[derive(Clone, Copy, Debug)]

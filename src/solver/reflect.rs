@@ -19,11 +19,8 @@ use crate::state::State;
 
 use super::Solver;
 use super::fluid_row::Row;
+use super::mirror::{FLAT, LEVEL};
 use super::pair::Block;
-
-/// Most that normals differ, and distances over the spacing, where a face counts as flat [1].
-const FLAT: f64 = 1e-6;
-const LEVEL: f64 = 1e-3;
 
 /// Faces that one particle sees at most: those of a corner.
 const MOST: usize = 3;
