@@ -145,17 +145,9 @@ impl Workers {
 
     /// As [`Workers::each`], a chunk at a time: f(first row, rows of out).
     pub fn in_chunks<T: Send>(&self, out: &mut [T], f: impl Fn(usize, &mut [T]) + Sync) {
-        match self.pool_for_rows(out.len()) {
-            None => {
-                for (c, part) in out.chunks_mut(CHUNK).enumerate() {
-                    f(c * CHUNK, part);
-                }
-            }
-            Some(pool) => pool.run(|| {
-                let parts = out.par_chunks_mut(CHUNK).enumerate();
-                parts.for_each(|(c, part)| f(c * CHUNK, part));
-            }),
-        }
+        hand_round(self.pool_for_rows(out.len()), out, &|c, part| {
+            f(c * CHUNK, part);
+        });
     }
 
     /// Blocks of rows side by side with the chunk of `out` that belongs to them: f(block, first row, rows of out).
@@ -165,20 +157,10 @@ impl Workers {
         out: &mut [T],
         f: impl Fn(&mut B, usize, &mut [T]) + Sync,
     ) {
-        match self.pool_for_pairs(out.len()) {
-            None => {
-                for (c, (b, part)) in blocks.iter_mut().zip(out.chunks_mut(CHUNK)).enumerate() {
-                    f(b, c * CHUNK, part);
-                }
-            }
-            Some(pool) => pool.run(|| {
-                blocks
-                    .par_iter_mut()
-                    .zip(out.par_chunks_mut(CHUNK))
-                    .enumerate()
-                    .for_each(|(c, (b, part))| f(b, c * CHUNK, part));
-            }),
-        }
+        let pool = self.pool_for_pairs(out.len());
+        hand_round_two(pool, (blocks, 1), out, &|c, block, part| {
+            f(&mut block[0], c * CHUNK, part);
+        });
     }
 
     /// As [`Workers::blocks`] with blocks that are only read.
@@ -188,20 +170,9 @@ impl Workers {
         out: &mut [T],
         f: impl Fn(&B, usize, &mut [T]) + Sync,
     ) {
-        match self.pool_for_pairs(out.len()) {
-            None => {
-                for (c, (b, part)) in blocks.iter().zip(out.chunks_mut(CHUNK)).enumerate() {
-                    f(b, c * CHUNK, part);
-                }
-            }
-            Some(pool) => pool.run(|| {
-                blocks
-                    .par_iter()
-                    .zip(out.par_chunks_mut(CHUNK))
-                    .enumerate()
-                    .for_each(|(c, (b, part))| f(b, c * CHUNK, part));
-            }),
-        }
+        hand_round(self.pool_for_pairs(out.len()), out, &|c, part| {
+            f(&blocks[c], c * CHUNK, part);
+        });
     }
 
     /// As [`Workers::blocks_read`]; the sum of what f returns for the chunks, added in their order.
@@ -211,24 +182,10 @@ impl Workers {
         out: &mut [T],
         f: impl Fn(&B, usize, &mut [T]) -> f64 + Sync,
     ) -> f64 {
-        match self.pool_for_pairs(out.len()) {
-            None => blocks
-                .iter()
-                .zip(out.chunks_mut(CHUNK))
-                .enumerate()
-                .fold(0.0, |sum, (c, (b, part))| sum + f(b, c * CHUNK, part)),
-            Some(pool) => {
-                let parts: Vec<f64> = pool.run(|| {
-                    blocks
-                        .par_iter()
-                        .zip(out.par_chunks_mut(CHUNK))
-                        .enumerate()
-                        .map(|(c, (b, part))| f(b, c * CHUNK, part))
-                        .collect()
-                });
-                parts.iter().fold(0.0, |sum, part| sum + part)
-            }
-        }
+        let parts = hand_round(self.pool_for_pairs(out.len()), out, &|c, part| {
+            f(&blocks[c], c * CHUNK, part)
+        });
+        parts.iter().fold(0.0, |sum, part| sum + part)
     }
 
     /// a[i] and b[i] written by f(i, &mut a[i], &mut b[i]), which returns what is to be summed; added chunk by chunk.
@@ -238,45 +195,24 @@ impl Workers {
         b: &mut [B],
         f: impl Fn(usize, &mut A, &mut B) -> [f64; K] + Sync,
     ) -> [f64; K] {
-        let chunk = |c: usize, (a, b): (&mut [A], &mut [B])| {
+        let pool = self.pool_for_rows(a.len());
+        let parts = hand_round_two(pool, (a, CHUNK), b, &|c, a, b| {
             let mut sum = [0.0; K];
             for (k, (a, b)) in a.iter_mut().zip(b).enumerate() {
-                sum = crate::math::add(&sum, &f(c * CHUNK + k, a, b));
+                sum = super::add(&sum, &f(c * CHUNK + k, a, b));
             }
             sum
-        };
-        let added = |sum: [f64; K], part: [f64; K]| crate::math::add(&sum, &part);
-        match self.pool_for_rows(a.len()) {
-            None => a
-                .chunks_mut(CHUNK)
-                .zip(b.chunks_mut(CHUNK))
-                .enumerate()
-                .fold([0.0; K], |sum, (c, parts)| added(sum, chunk(c, parts))),
-            Some(pool) => {
-                let parts: Vec<[f64; K]> = pool.run(|| {
-                    a.par_chunks_mut(CHUNK)
-                        .zip(b.par_chunks_mut(CHUNK))
-                        .enumerate()
-                        .map(|(c, parts)| chunk(c, parts))
-                        .collect()
-                });
-                parts.into_iter().fold([0.0; K], added)
-            }
-        }
+        });
+        parts
+            .iter()
+            .fold([0.0; K], |sum, part| super::add(&sum, part))
     }
 
     /// What f gives for the chunks of 0..n, in their order.
     fn chunks<R: Send>(&self, n: usize, f: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
-        let range = |c: usize| c * CHUNK..((c + 1) * CHUNK).min(n);
-        match self.pool_for_rows(n) {
-            None => (0..chunks(n)).map(|c| f(range(c))).collect(),
-            Some(pool) => pool.run(|| {
-                (0..chunks(n))
-                    .into_par_iter()
-                    .map(|c| f(range(c)))
-                    .collect()
-            }),
-        }
+        count_round(self.pool_for_rows(n), chunks(n), &|c| {
+            f(c * CHUNK..((c + 1) * CHUNK).min(n))
+        })
     }
 
     /// sum_i f(i) for i < n, partial sums of chunks added in their order: the same bits for any number of threads.
@@ -306,6 +242,58 @@ impl Workers {
     pub fn first_bad(&self, n: usize, is_bad: impl Fn(usize) -> bool + Sync) -> Option<usize> {
         let parts = self.chunks(n, |mut range| range.find(|&i| is_bad(i)));
         parts.into_iter().flatten().next()
+    }
+}
+
+// What goes to the pool is no type of its own: else each sweep would be compiled with a copy of rayon's machinery and of itself
+// in every part of it, a third of the library. A chunk costs a call through a pointer.
+
+/// f(chunk, rows of out) for all chunks; what it gives, in their order.
+fn hand_round<T: Send, R: Send>(
+    pool: Option<&Pool>,
+    out: &mut [T],
+    f: &(dyn Fn(usize, &mut [T]) -> R + Sync),
+) -> Vec<R> {
+    match pool {
+        None => {
+            let parts = out.chunks_mut(CHUNK).enumerate();
+            parts.map(|(c, part)| f(c, part)).collect()
+        }
+        Some(pool) => pool.run(|| {
+            let parts = out.par_chunks_mut(CHUNK).enumerate();
+            parts.map(|(c, part)| f(c, part)).collect()
+        }),
+    }
+}
+
+/// As [`hand_round`], with as many of `a` to each chunk as said.
+fn hand_round_two<A: Send, B: Send, R: Send>(
+    pool: Option<&Pool>,
+    (a, size): (&mut [A], usize),
+    b: &mut [B],
+    f: &(dyn Fn(usize, &mut [A], &mut [B]) -> R + Sync),
+) -> Vec<R> {
+    match pool {
+        None => {
+            let parts = a.chunks_mut(size).zip(b.chunks_mut(CHUNK)).enumerate();
+            parts.map(|(c, (a, b))| f(c, a, b)).collect()
+        }
+        Some(pool) => pool.run(|| {
+            let parts = a.par_chunks_mut(size).zip(b.par_chunks_mut(CHUNK));
+            parts.enumerate().map(|(c, (a, b))| f(c, a, b)).collect()
+        }),
+    }
+}
+
+/// As [`hand_round`], without rows.
+fn count_round<R: Send>(
+    pool: Option<&Pool>,
+    count: usize,
+    f: &(dyn Fn(usize) -> R + Sync),
+) -> Vec<R> {
+    match pool {
+        None => (0..count).map(f).collect(),
+        Some(pool) => pool.run(|| (0..count).into_par_iter().map(f).collect()),
     }
 }
 

@@ -73,7 +73,8 @@ fn binds(run: &SpeedRun) -> String {
 
 /// Not from the stored run: a sampling profile, which a reader repeats with the command it names.
 const PROFILE: &str = "A sampling profile of the column's first 0.3 s on 2026-11-21 (`perf record -e cpu-clock` of `sandgate \
-run cases/column_collapse.toml --until 0.3 --threads 1`, samples sorted by source line) had 25 % in the pair sweep (14 % sums and \
+run cases/column_collapse.toml --until 0.3 --threads 1`, built with `CARGO_PROFILE_RELEASE_DEBUG=line-tables-only`, samples sorted by \
+source line) had 25 % in the pair sweep (14 % sums and \
 coefficients, 4 % finding neighbours, 3 % each particle's end, 2 % walls), 18 % in stress sweeps, 13 % in force sweeps, 12 % in \
 building lists, 8 % in the pressure sweep, 8 % in the law of friction, 5 % in gauges, 4 % in the solve's vectors and the yield's \
 projection.";
