@@ -14,6 +14,7 @@ use crate::state::State;
 
 use super::Solver;
 use super::pair::Block;
+use super::reflect::{reflected_divergence, reflected_pressure};
 
 /// What the acoustic steps before the last one leave; empty where there is one.
 #[derive(Debug, Default)]
@@ -124,6 +125,9 @@ impl<const D: usize> Solver<D> {
                         *o = self.row_divergence(lanes, block, (i, row), u);
                         if let Some(w) = walls.next_if(|w| w.row as usize == row) {
                             *o += w.divergence(&u[i]);
+                            if !self.has_fluids {
+                                *o += reflected_divergence(block.reflections_of(w), i, u);
+                            }
                         }
                     }
                 );
@@ -145,6 +149,13 @@ impl<const D: usize> Solver<D> {
                         if let Some(w) = seen {
                             for k in 0..D {
                                 push[k] -= 2.0 * self.pressure[i] * w.s[k];
+                            }
+                            if !self.has_fluids {
+                                let along =
+                                    reflected_pressure(block.reflections_of(w), i, &self.pressure);
+                                for k in 0..D {
+                                    push[k] -= along[k];
+                                }
                             }
                         }
                         let specific = self.specific_volume(state, i);

@@ -134,12 +134,17 @@ impl<const D: usize> Solver<D> {
                     let v = &state.grains.velocity;
                     add_image_gradient(block.images_of(&w), i, v, &mut sums.images);
                 }
-                if FLUIDS && D > 2 && !self.faces.is_empty() {
+                if !self.faces.is_empty() {
                     let first = block.reflections.len() as u32;
                     self.find_reflections(state, i, block, &near[..count], &mut sums);
                     w.reflections = (first, block.reflections.len() as u32);
                     let v = &state.grains.velocity;
-                    add_reflected_gradient(block.reflections_of(&w), i, v, &mut sums.images);
+                    let into = if FLUIDS {
+                        &mut sums.images
+                    } else {
+                        &mut sums.gradient
+                    };
+                    add_reflected_gradient(block.reflections_of(&w), i, v, into);
                 }
                 block.wall_rows.push(w);
                 alone = false;

@@ -11,6 +11,7 @@ use crate::state::State;
 
 use super::Solver;
 use super::pair::{Block, WallRow};
+use super::reflect::reflected_pressure;
 
 /// Weight of |div v| against the shear rate in the share of the made-up viscosity that a particle feels [1]: a plane wave has both.
 const DAMPED: f64 = 4.0;
@@ -108,6 +109,12 @@ impl<const D: usize> Solver<D> {
                 self.slope_in_grains(state, block, (i, row))
             };
             self.carry_slope(&slope, before, dt, w, &mut o.velocity);
+        }
+        if !self.has_fluids {
+            let along = reflected_pressure(block.reflections_of(w), i, self.normal_pressure());
+            for k in 0..D {
+                o.velocity[k] -= dt * self.specific_volume(state, i) * along[k];
+            }
         }
         if w.barrier > 0.0 {
             for k in 0..D {

@@ -11,8 +11,12 @@
 //! and of the pair form -V_i s_p sum_j eta_ij 2 (D + 2) |F'| V_j t (t . (v_i - v_j))/r'^2, t = P (x_i - x_j). F is the adjoint of G and
 //! opposite for j: the wall has no part in it. Across the face all is as the points say.
 //!
-//! Grains do without: their pressure along a face is that of points, which know nothing of its slope, and shear stress that went on
-//! beside it would be too much for it.
+//! Of grains, where there are no fluids and no pores, pressure goes on along the face, too,
+//!
+//!   div v_i += sum_j P (v_j - v_i) . g'_ij,   a_i -= (1/rho_i) sum_j (p_i + p_j) P g'_ij                        (W12)
+//!
+//! each the adjoint of the other: points at p_i show 0.65 of its slope, and what flows beside them bears 0.7 of a spacing's weight too
+//! much over the width. Fluids have (W7), and what presses in pores (W10).
 
 use crate::math::{Tensor, Vector, add_outer, along, apply, dot, norm, sub};
 use crate::state::State;
@@ -50,11 +54,12 @@ pub(super) struct Reflection<const D: usize> {
 }
 
 impl<const D: usize> Solver<D> {
-    /// Notes the flat faces with free slip that each particle of a fluid sees, none where it is behind one (an edge, a lip); nothing in
-    /// the plane.
+    /// Notes the flat faces with free slip that each particle sees, none where it is behind one (an edge, a lip): fluids in scenes that
+    /// have some, else dry grains; nothing in the plane.
     pub(super) fn note_faces(&mut self, state: &State<D>) {
         let fixed = &self.walls.groups[..self.fixed_groups];
-        if D < 3 || !self.has_fluids || !fixed.iter().any(|g| g.free_slip) {
+        let wet_grains_alone = self.has_pores && !self.has_fluids;
+        if D < 3 || wet_grains_alone || !fixed.iter().any(|g| g.free_slip) {
             return;
         }
         let none = [FaceAhead {
@@ -69,9 +74,8 @@ impl<const D: usize> Solver<D> {
                 for (row, o) in out.iter_mut().enumerate() {
                     let (i, near) = (first + row, block.wall_row(row));
                     let is_fluid = self.materials[state.grains.phase[i] as usize].is_fluid();
-                    let found = is_fluid.then(|| self.faces_of(state, i, near, &none));
-                    if let Some(found) = found.flatten() {
-                        *o = found;
+                    if is_fluid == self.has_fluids {
+                        *o = self.faces_of(state, i, near, &none).unwrap_or(none);
                     }
                 }
             });
@@ -132,8 +136,9 @@ impl<const D: usize> Solver<D> {
         let (x, v) = (&state.grains.position, &state.grains.velocity);
         for face in own.iter().filter(|f| f.distance > 0.0) {
             for &j in near {
-                // Between materials no more than (F6) says.
-                let same = state.grains.phase[i] == state.grains.phase[j as usize];
+                // Between fluids no more than (F6) says.
+                let same =
+                    !self.has_fluids || state.grains.phase[i] == state.grains.phase[j as usize];
                 if j as usize == i || !same {
                     continue;
                 }
@@ -196,6 +201,37 @@ pub(super) fn add_reflected_gradient<const D: usize>(
         let d = along(&image.normal, &sub(&v[image.j as usize], &v[i]));
         add_outer(gradient, image.weight, &d, &image.along);
     }
+}
+
+/// sum_j P (v_j - v_i) . g'_ij.
+#[inline(always)]
+pub(super) fn reflected_divergence<const D: usize>(
+    reflections: &[Reflection<D>],
+    i: usize,
+    v: &[Vector<D>],
+) -> f64 {
+    let mut rate = 0.0;
+    for image in reflections {
+        rate += image.weight * dot(&image.along, &sub(&v[image.j as usize], &v[i]));
+    }
+    rate
+}
+
+/// sum_j (p_i + p_j) P g'_ij per volume: the adjoint of the trace of [`add_reflected_gradient`].
+#[inline(always)]
+pub(super) fn reflected_pressure<const D: usize>(
+    reflections: &[Reflection<D>],
+    i: usize,
+    pressure: &[f64],
+) -> Vector<D> {
+    let mut f = [0.0; D];
+    for image in reflections {
+        let both = image.weight * (pressure[i] + pressure[image.j as usize]);
+        for k in 0..D {
+            f[k] += both * image.along[k];
+        }
+    }
+    f
 }
 
 /// sum_j P (tau_i + tau_j) P g'_ij per volume: minus the adjoint of [`add_reflected_gradient`].

@@ -1,11 +1,12 @@
-//! The sweeps beside walls: clay on a floor without slip, and a belt, a smooth face and a bend.
+//! The sweeps beside walls: clay on a floor without slip, a belt, a smooth face and a bend, and sand on a smooth floor in space.
 
 use super::{JITTER, clay, close, disordered_on, is_symmetric};
 use crate::boundary::{GroupSpec, WallPoints};
 use crate::material::Material;
-use crate::math::{Geometry, Vector};
+use crate::math::{CHUNK, Geometry, Vector};
 use crate::solver::Solver;
 use crate::solver::record::Record;
+use crate::solver::reflect::{reflected_divergence, reflected_pressure};
 use crate::solver::sample::SPACING;
 use crate::state::State;
 
@@ -135,4 +136,51 @@ fn the_viscous_operator_over_a_floor_is_symmetric() {
     let images: usize = solver.lists.blocks.iter().map(|b| b.images.len()).sum();
     assert!(images > 300, "{images}");
     is_symmetric(&solver, &state.grains.velocity);
+}
+
+/// Sand on a smooth floor in space: what images add to pressure and to div v is each the adjoint of the other, and works between
+/// particles alone (docs/theory.md, W12).
+#[test]
+fn images_of_sand_in_a_smooth_floor_keep_momentum_and_energy() {
+    let mut floor = WallPoints::default();
+    for n in 0..8 * 14 * 4 {
+        let place = |k: usize| (k as f64 + 0.5) * SPACING;
+        let (x, y, z) = (n % 8, n / 8 % 14, n / 112);
+        let at = [place(x), place(y) - 3.0 * SPACING, -place(z)];
+        floor.push(at, [0.0; 3], [0.0, 0.0, 1.0], 1.0, 0);
+    }
+    floor.groups.push(GroupSpec {
+        free_slip: true,
+        friction: 0.0,
+        moves: false,
+        wants_force: false,
+        spin: [0.0; 3],
+    });
+    let (solver, state) = disordered_on::<3>(Material::sand_04(), Geometry::Space, 8, floor);
+    let v = &state.grains.velocity;
+    let pressure: Vec<f64> = v.iter().map(|v| 100.0 + v[0]).collect();
+    let (mut push, mut power, mut seen) = ([0.0; 3], [0.0; 2], 0);
+    for (b, block) in solver.lists.blocks.iter().enumerate() {
+        for w in &block.wall_rows {
+            let i = b * CHUNK + w.row as usize;
+            let images = block.reflections_of(w);
+            let force = reflected_pressure(images, i, &pressure);
+            for k in 0..3 {
+                push[k] -= solver.volume[i] * force[k];
+                power[0] -= solver.volume[i] * force[k] * v[i][k];
+            }
+            power[1] += solver.volume[i] * pressure[i] * reflected_divergence(images, i, v);
+            seen += images.len();
+        }
+    }
+    assert!(seen > 1000, "{seen}");
+    assert!(power[0].abs() > 1e-3, "{power:?}");
+    close(power[0], power[1], 1e3);
+    push.iter().for_each(|push| close(*push, 0.0, 1e3));
+    // The whole of div v of a flow along the floor, with its acoustic steps.
+    let mut found = Vec::new();
+    solver.divergence(v, &mut found);
+    for (found, k) in found.iter().zip(&solver.kinematics) {
+        close(*found, k.divergence, 100.0);
+    }
 }

@@ -67,3 +67,57 @@ fn a_slice_between_smooth_walls_flows_as_the_plane() {
     // The points behind bed and side walls are the bed's, whichever stands first.
     assert!((other_order / slice - 1.0).abs() < 1e-3, "{other_order}");
 }
+
+/// Points of smooth side walls show 0.65 of the slope of pressure along them; images (docs/theory.md, W12) the rest.
+#[test]
+fn sand_between_smooth_walls_has_the_pressure_of_its_depth() {
+    let degrees = 26.0_f64;
+    let (along, down) = (
+        9.81 * degrees.to_radians().sin(),
+        9.81 * degrees.to_radians().cos(),
+    );
+    let text = format!(
+        r#"
+name = "slice"
+dimension = 3
+[domain]
+lower = [0, -0.02, -0.02]
+upper = [0.016, 0.032, 0.04]
+gravity = [{along}, 0, -{down}]
+periodic = ["x"]
+[numerics]
+spacing = 0.002
+[materials.sand]
+law = "mu_i"
+preset = "glass_beads"
+[bodies.layer]
+material = "sand"
+box = {{ lower = [0, 0, 0], upper = [0.016, 0.012, 0.02] }}
+[walls.bed]
+plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
+slip = "no_slip"
+[walls.left]
+plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }}
+slip = "free_slip"
+[walls.right]
+plane = {{ point = [0, 0.012, 0], normal = [0, -1, 0] }}
+slip = "free_slip"
+[gauges.middle]
+kind = "pressure"
+at = [0.008, 0.006, 0.01]
+[run]
+step = 0.02
+until = 0.3
+"#
+    );
+    let mut unit = Unit::new(&scene::parse("slice", &text).unwrap());
+    let mut mean = 0.0;
+    for k in 0..8 {
+        unit.run_to(0.16 + 0.02 * f64::from(k));
+        mean += unit.get("gauge.middle.pressure") / 8.0;
+    }
+    // Half of the layer's weight on the bed's area.
+    let load = 0.5 * unit.get("mass.present") * down / (0.016 * 0.012);
+    println!("{mean} Pa of {load} Pa");
+    assert!((mean / load - 1.0).abs() < 0.03, "{mean} {load}");
+}
