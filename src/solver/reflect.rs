@@ -18,7 +18,7 @@
 //! each the adjoint of the other: points at p_i show 0.65 of its slope, and what flows beside them bears 0.7 of a spacing's weight too
 //! much over the width. Fluids have (W7), and what presses in pores (W10).
 
-use crate::math::{Tensor, Vector, add_outer, along, apply, dot, norm, sub};
+use crate::math::{Tensor, Vector, add_outer, along, apply, dot, sub};
 use crate::state::State;
 
 use super::Solver;
@@ -93,12 +93,12 @@ impl<const D: usize> Solver<D> {
         let xi = &state.grains.position[i];
         let (mut faces, mut count) = (*none, 0);
         for &wall in near {
-            let (x, r) = self.wall_offset(xi, wall);
             let group = self.walls.group[wall as usize] as usize;
-            if r >= self.kernel.support()
-                || self.walls.weight[wall as usize] == 0.0
-                || !self.walls.groups[group].free_slip
-            {
+            if !self.walls.groups[group].free_slip || self.walls.weight[wall as usize] == 0.0 {
+                continue;
+            }
+            let (x, r) = self.wall_offset(xi, wall);
+            if r >= self.kernel.support() {
                 continue;
             }
             if group >= self.fixed_groups {
@@ -142,10 +142,13 @@ impl<const D: usize> Solver<D> {
                 if j as usize == i || !same {
                     continue;
                 }
-                let level = |f: &&FaceAhead<D>| {
-                    f.distance > 0.0 && dot(&f.normal, &face.normal) > 1.0 - FLAT
+                // Most stand too far from the face for their images to reach i.
+                let reach = |f: &&FaceAhead<D>| {
+                    f.distance > 0.0
+                        && f.distance + face.distance < self.kernel.support()
+                        && dot(&f.normal, &face.normal) > 1.0 - FLAT
                 };
-                let Some(other) = self.faces[j as usize].iter().find(level) else {
+                let Some(other) = self.faces[j as usize].iter().find(reach) else {
                     continue;
                 };
                 let offset = self.periodic.difference(&x[i], &x[j as usize]);
@@ -170,21 +173,20 @@ impl<const D: usize> Solver<D> {
         // The same from both sides to the last bit, so that the operator is symmetric.
         let normal: Vector<D> = std::array::from_fn(|k| 0.5 * (own.normal[k] + other.normal[k]));
         let up = dot(&normal, offset);
-        if (up - (own.distance - other.distance)).abs() > LEVEL * self.numerics.spacing {
+        let along: Vector<D> = std::array::from_fn(|k| offset[k] - up * normal[k]);
+        let r2 = dot(&along, &along) + (own.distance + other.distance).powi(2);
+        let level = (up - (own.distance - other.distance)).abs();
+        if r2 >= self.kernel.support().powi(2) || level > LEVEL * self.numerics.spacing {
             return None;
         }
-        let along = along(&normal, offset);
-        let r = norm(&along).hypot(own.distance + other.distance);
-        if r >= self.kernel.support() {
-            return None;
-        }
+        let r = r2.sqrt();
         let weight = self.volume[j as usize] * self.kernel.f(r);
         Some(Reflection {
             j,
             normal,
             along,
             weight,
-            by_pairs: -2.0 * (D as f64 + 2.0) * weight / (r * r),
+            by_pairs: -2.0 * (D as f64 + 2.0) * weight / r2,
         })
     }
 }
