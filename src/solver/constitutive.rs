@@ -129,7 +129,7 @@ impl<const D: usize> Solver<D> {
                 m.bulk_friction,
                 p,
                 k.divergence,
-                k.correction * k.shear,
+                k.correction * k.shear + self.slow_rate(),
                 rho * self.kernel.h * self.numerics.sound_speed,
             );
         }

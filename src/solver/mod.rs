@@ -18,6 +18,7 @@ mod directions;
 mod equation_of_state;
 mod error;
 mod explicit;
+mod face_sums;
 mod fluid_row;
 mod friction_row;
 mod grid;

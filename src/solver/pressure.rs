@@ -16,7 +16,7 @@ use super::reflect::reflected_pressure;
 /// Weight of |div v| against the shear rate in the share of the made-up viscosity that a particle feels [1]: a plane wave has both.
 const DAMPED: f64 = 4.0;
 
-/// Shear rate over sqrt(g/H) below which noise is all there is, and is damped [1].
+/// Shear rate over sqrt(g/H) below which noise is all there is [1].
 const SLOW: f64 = 0.1;
 
 /// What the sweep leaves per particle.
@@ -154,6 +154,11 @@ impl<const D: usize> Solver<D> {
         self.loads = loads;
     }
 
+    /// Shear rate below which noise is all there is, 0.1 sqrt(g/H) [1/s].
+    pub(super) fn slow_rate(&self) -> f64 {
+        SLOW * self.gravity_norm / self.numerics.fall_speed.max(f64::MIN_POSITIVE)
+    }
+
     /// Notes how much of the viscosity made up to their own particles feel: what is sheared alone needs none (E21).
     fn note_damped(&mut self) {
         if !self
@@ -163,7 +168,7 @@ impl<const D: usize> Solver<D> {
         {
             return;
         }
-        let slow = SLOW * self.gravity_norm / self.numerics.fall_speed.max(f64::MIN_POSITIVE);
+        let slow = self.slow_rate();
         let kinematics = &self.kinematics;
         self.damped.resize(kinematics.len(), 0.0);
         self.workers.each(&mut self.damped, |i, share| {

@@ -10,7 +10,8 @@ use crate::state::State;
 
 use super::Solver;
 use super::barrier::{Nearness, Rub};
-use super::bend::{Bend, Turning};
+use super::bend::Turning;
+use super::face_sums::FaceSums;
 use super::fluid_row::Row;
 use super::pair::WallRow;
 use super::wall_contact::{Contact, Face};
@@ -18,110 +19,6 @@ use super::wall_contact::{Contact, Face};
 /// Distance to the nearest wall point from which on (W5) cannot act, over the spacing [1]: on the surface it is 0.87 at most, and
 /// even a point missing inside a wall has its neighbours nearer.
 const CLEAR: f64 = 1.1;
-
-/// Sums over the points of one face, those of one wall with one normal, as one particle sees them.
-struct FaceSums<const D: usize> {
-    group: u16,
-    /// Unit normal towards the material; 0 where neither slip nor fluid asks for it.
-    normal: Vector<D>,
-    free_slip: bool,
-    /// Where it is a bend with free slip.
-    bend: Option<Bend<D>>,
-    /// v_w of the last point.
-    velocity: Vector<D>,
-    /// -sum x (x) g.
-    around: Tensor<D>,
-    /// sum g.
-    s: Vector<D>,
-    /// sum v_w (x) g.
-    carried: Tensor<D>,
-    /// sum c (P g)(P g)^T, c = 2 (D + 2)/(|g| r).
-    pair: Tensor<D>,
-    /// sum c (P g)(P g)^T v_w.
-    dragged: Vector<D>,
-    /// sum |F| V (n.x)^2 of fluids without slip; else 0.
-    lean: f64,
-    /// sum |F| V x x^T of fluids, of x along the face of grains that bear a fluid (W7); else 0.
-    moment: Tensor<D>,
-    /// sum |F| V x (x.v_w) of the same; else 0.
-    moment_drive: Vector<D>,
-}
-
-impl<const D: usize> FaceSums<D> {
-    fn new(group: u16, normal: Vector<D>, free_slip: bool, bend: Option<Bend<D>>) -> Self {
-        Self {
-            group,
-            normal,
-            free_slip,
-            bend,
-            velocity: [0.0; D],
-            around: [[0.0; D]; D],
-            s: [0.0; D],
-            carried: [[0.0; D]; D],
-            pair: [[0.0; D]; D],
-            dragged: [0.0; D],
-            lean: 0.0,
-            moment: [[0.0; D]; D],
-            moment_drive: [0.0; D],
-        }
-    }
-
-    /// Whether a point with this normal, in this bend, is one more of it.
-    #[inline(always)]
-    fn has(&self, group: u16, normal: &Vector<D>, bend: Option<&Bend<D>>) -> bool {
-        let same_bend = match (&self.bend, bend) {
-            (None, None) => true,
-            (Some(a), Some(b)) => a.is(b),
-            _ => false,
-        };
-        self.group == group && self.normal == *normal && same_bend
-    }
-
-    /// n of P.
-    #[inline(always)]
-    fn across(&self) -> &Vector<D> {
-        self.bend.as_ref().map_or(&self.normal, |b| &b.normal)
-    }
-
-    /// P a.
-    #[inline(always)]
-    fn seen(&self, a: &Vector<D>) -> Vector<D> {
-        if self.free_slip {
-            let n = self.across();
-            scale(dot(n, a), n)
-        } else {
-            *a
-        }
-    }
-
-    /// Adds |F| V x x^T of `weight` = |F| V.
-    #[inline(always)]
-    fn add_moment(&mut self, weight: f64, x: &Vector<D>, vw: &Vector<D>) {
-        add_outer(&mut self.moment, weight, x, x);
-        let drive = weight * dot(x, vw);
-        for k in 0..D {
-            self.moment_drive[k] += drive * x[k];
-        }
-    }
-
-    /// Adds a point; `c` is 2 (D + 2)/(|g| r).
-    #[inline(always)]
-    fn add(&mut self, g: &Vector<D>, c: f64, vw: &Vector<D>) {
-        for k in 0..D {
-            self.s[k] += g[k];
-        }
-        let pg = self.seen(g);
-        add_outer(&mut self.pair, c, &pg, &pg);
-        // Most walls stand still.
-        if *vw != [0.0; D] {
-            add_outer(&mut self.carried, 1.0, vw, g);
-            let drive = c * dot(&pg, vw);
-            for k in 0..D {
-                self.dragged[k] += drive * pg[k];
-            }
-        }
-    }
-}
 
 impl<const D: usize> Solver<D> {
     /// Adds to the sums of row i what the wall points `near` it give, and to `contacts` the faces with friction; `None` where

@@ -80,11 +80,17 @@ fn fill(log: &Path, folder: &Path, window: &Window) -> Result<(String, Ending), 
         file.write_all(collection(list).as_bytes())
             .map_err(|e| cannot_write(&path, e))?;
     }
-    let line = format!(
+    let mut line = format!(
         "{}: {} snapshots; open particles.pvd and walls.pvd",
         folder.display(),
         particles.len()
     );
+    if snapshots.start == 0 {
+        line += &format!(
+            "\nnote: the log holds no particles. `sandgate log redrive {} --log NEW.mcap --particles-every '20 ms'` makes one that does.",
+            log.display()
+        );
+    }
     Ok((line, reader.ending().cloned().unwrap_or_default()))
 }
 

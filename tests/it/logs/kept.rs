@@ -17,11 +17,11 @@ struct Run {
 }
 
 impl Run {
-    fn start(path: &Path) -> Self {
+    fn start(path: &Path, particles_every: f64) -> Self {
         let scene = scene::load(&python::root().join(SCENE)).unwrap();
         let mut component = Component::new(&scene).unwrap();
         let options = RecordOptions {
-            particles_every: H,
+            particles_every,
             ..RecordOptions::of(&component)
         };
         let mut recorder = Recorder::create(path, &component, options).unwrap();
@@ -82,7 +82,7 @@ impl Run {
 /// Ten steps and two more; a run that looks elsewhere goes back to the fifth in between, tries so many other steps, and goes
 /// forth to the tenth again.
 fn run(path: &Path, elsewhere: Option<usize>) {
-    let mut run = Run::start(path);
+    let mut run = Run::start(path, H);
     run.steps(5, 0.25);
     let early = run.save();
     run.steps(5, 0.5);
@@ -147,7 +147,7 @@ fn what_is_exported_of_a_run_that_went_back_and_forth_is_that_of_one_that_did_no
 fn pictures_have_one_snapshot_a_time_where_each_step_is_tried_three_times() {
     let folder = temp_dir::TempDir::new().unwrap();
     let path = folder.path().join("tried.mcap");
-    let mut run = Run::start(&path);
+    let mut run = Run::start(&path, H);
     for _ in 0..4 {
         let state = run.save();
         for opening in [0.0, 1.0] {
@@ -169,4 +169,18 @@ fn pictures_have_one_snapshot_a_time_where_each_step_is_tried_three_times() {
         assert_eq!(times.len(), 5, "{list}: {times:?}");
         assert!(times.is_sorted_by(|a, b| a < b), "{list}: {times:?}");
     }
+}
+
+#[test]
+fn an_export_of_particles_that_a_log_lacks_says_how_to_get_them() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let [path, vtk] = ["run.mcap", "vtk"].map(|name| folder.path().join(name));
+    let mut run = Run::start(&path, 0.0);
+    run.steps(2, 1.0);
+    run.finish();
+    let [path, vtk] = [path, vtk].map(|path| path.display().to_string());
+    let said = log(&["export", &path, "--vtk", &vtk]);
+    assert!(said.contains("0 snapshots"), "{said}");
+    let remedy = format!("log redrive {path} --log NEW.mcap --particles-every");
+    assert!(said.contains(&remedy), "{said}");
 }
