@@ -266,12 +266,15 @@ fn hand_round<T: Send, R: Send>(
     }
 }
 
+/// What is done with a chunk of two lists: f(chunk, of the one, of the other).
+type Both<'f, A, B, R> = dyn Fn(usize, &mut [A], &mut [B]) -> R + Sync + 'f;
+
 /// As [`hand_round`], with as many of `a` to each chunk as said.
 fn hand_round_two<A: Send, B: Send, R: Send>(
     pool: Option<&Pool>,
     (a, size): (&mut [A], usize),
     b: &mut [B],
-    f: &(dyn Fn(usize, &mut [A], &mut [B]) -> R + Sync),
+    f: &Both<'_, A, B, R>,
 ) -> Vec<R> {
     match pool {
         None => {
