@@ -1,4 +1,4 @@
-//! Fluids at flat walls with free slip in space: along the face they go on as their mirror image (docs/theory.md, W11).
+//! Flat walls with free slip in space: fluids and dry grains go on along the face as their mirror image (docs/theory.md, W11, W12).
 //!
 //! A point of such a face gives nothing along itself. In the plane that is all there is to shear; in space what is sheared along the
 //! face, as a layer on a bed between side walls, has half of its neighbours there: the first rows saw 0.65 of their strain and took as
