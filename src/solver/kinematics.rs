@@ -127,7 +127,7 @@ impl<const D: usize> Solver<D> {
                     &mut contacts,
                 )
             {
-                if FLUIDS && !RINGS {
+                if FLUIDS {
                     let first_image = block.images.len() as u32;
                     w.lean_less = self.find_images(state, i, block, &near[..count], &w.lean);
                     w.images = (first_image, block.images.len() as u32);

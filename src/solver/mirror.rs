@@ -51,7 +51,7 @@ impl<const D: usize> Solver<D> {
     pub(super) fn note_mirrors(&mut self, state: &State<D>) {
         let fixed = &self.walls.groups[..self.fixed_groups];
         let nothing_sticks = fixed.iter().all(|g| g.free_slip);
-        if !self.has_fluids || nothing_sticks || self.geometry.is_axisymmetric() {
+        if !self.has_fluids || nothing_sticks {
             return;
         }
         let none = Mirror {
@@ -143,7 +143,7 @@ impl<const D: usize> Solver<D> {
             if r >= self.kernel.support() {
                 continue;
             }
-            let vf = self.volume[j as usize] * self.kernel.f(r);
+            let vf = self.volume_seen(i, j as usize) * self.kernel.f(r);
             let by_pairs = (-2.0 * (D as f64 + 2.0) * vf).sqrt() / r;
             let t = along.map(|c| by_pairs * c);
             add_outer(&mut of_pairs, other.distance * other.distance, &t, &t);

@@ -53,6 +53,7 @@ mod record;
 mod reflect;
 mod rest;
 mod ring;
+mod ring_sections;
 #[cfg(test)]
 mod ring_tests;
 #[cfg(any(test, feature = "cli"))]
@@ -204,4 +205,6 @@ pub struct Solver<const D: usize> {
     paper_b: paper_b::Work<D>,
     /// Positions before the last move, for section crossings.
     before: Vec<Vector<D>>,
+    /// What the last making of lists did to rings.
+    moved: ring_sections::Moved<D>,
 }

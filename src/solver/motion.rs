@@ -138,6 +138,14 @@ impl<const D: usize> Solver<D> {
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.opening, gate.rate);
         }
+        self.build_lists(state);
+        if self.resize_rings(state) {
+            self.lists.sort(&mut state.grains, &self.periodic);
+            self.build_lists(state);
+        }
+    }
+
+    fn build_lists(&mut self, state: &State<D>) {
         self.lists.build(
             &state.grains,
             &self.walls,

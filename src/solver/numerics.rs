@@ -87,6 +87,8 @@ pub struct Numerics {
     pub sleep: bool,
     /// Steps from one solve of the seepage to the next, at least 1; default 4.
     pub seepage_interval: u64,
+    /// Whether rings are halved and joined so that their sections stay near dp^2; default true.
+    pub resize_rings: bool,
     /// Random displacement of the starting lattice over dp [1], which is staggered unless this is 0; default 0.1.
     pub jitter: f64,
     /// Seed of that displacement.

@@ -6,7 +6,7 @@
 //! Rings do not meet their images across the axis; what is missing there is local, a share `axis` of v_r, and hoop
 //! strain is v_r `hoop`.
 
-use crate::math::{Geometry, Tensor, Vector, dot, scale, sub, trace};
+use crate::math::{Geometry, Tensor, Vector, dot, norm, scale, sub, trace};
 use crate::state::State;
 
 use super::Solver;
@@ -100,6 +100,49 @@ impl<const D: usize> Solver<D> {
     pub(super) fn ring_wall_area(&self, i: usize, wall: u32, weight: f64) -> f64 {
         let radius = self.walls.position[wall as usize][0];
         self.lattice_cell() * weight * 0.5 * (1.0 + radius * self.rings[i].hoop)
+    }
+
+    /// V_j of a neighbour as pair coefficients have it: the volume, or (1/w_i + 1/w_j)/2 of a ring's (R2).
+    #[inline(always)]
+    pub(super) fn volume_seen(&self, i: usize, j: usize) -> f64 {
+        if !self.geometry.is_axisymmetric() {
+            return self.volume[j];
+        }
+        let hoops = self.rings[i].hoop + self.rings[j].hoop;
+        self.volume[j] * 0.5 / std::f64::consts::TAU * hoops
+    }
+
+    /// grad C of rings in the section [1/m]: pair coefficients are longer the further out a neighbour is, and would push all to the axis.
+    /// Without images across the axis: what sees it counts as beside a surface.
+    pub(super) fn slope_of_sections(
+        &self,
+        state: &State<D>,
+        block: &Block<D>,
+        (i, row): (usize, usize),
+    ) -> Vector<D> {
+        let place = &state.grains.position;
+        let mut slope = [0.0; D];
+        let mut add = |other: &Vector<D>, area: f64| {
+            let x = self.periodic.difference(&place[i], other);
+            let r = norm(&x);
+            if r > 0.0 && r < self.kernel.support() {
+                let weight = area * self.kernel.f(r);
+                for k in 0..D {
+                    slope[k] += weight * x[k];
+                }
+            }
+        };
+        for &j in block.row(row) {
+            let j = j as usize;
+            let length = std::f64::consts::TAU / self.rings[j].hoop;
+            add(&place[j], self.volume[j] / length);
+        }
+        for &w in block.wall_row(row) {
+            let w = w as usize;
+            let area = self.lattice_cell() * self.walls.weight[w];
+            add(&self.walls.position[w], area);
+        }
+        slope
     }
 
     /// dp^2 [m^2].

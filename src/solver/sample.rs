@@ -33,6 +33,7 @@ pub(super) fn numerics() -> Numerics {
         solver_max_iterations: 500,
         sleep: false,
         seepage_interval: 1,
+        resize_rings: true,
         jitter: 0.0,
         seed: 1,
     }

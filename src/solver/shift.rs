@@ -14,6 +14,8 @@
 //!
 //!   d rho_i/dt = -rho_i [sum_j (du_j - du_i) . g_ij - 2 du_i . sum_walls g_iw]                      (SH2)
 //!
+//! and du_r/r of rings, whose C is that of the section.
+//!
 //! div v of a flow whose places grow uneven is the rate at which sum_j V_j W_ij grows. Shifting takes that back; while density did
 //! not see it, pressure in closed channels rose by 10 to 30 Pa a second, for good (not Bingham's).
 //!
@@ -75,7 +77,7 @@ impl<const D: usize> Solver<D> {
             .blocks_read(&self.lists.blocks, &mut divergence, |block, first, out| {
                 for (row, o) in out.iter_mut().enumerate() {
                     let own = shift[first + row];
-                    *o = 0.0;
+                    *o = self.hoop_rate(first + row, &own);
                     block.for_each_pair(row, |j, _, g| {
                         *o += dot(&sub(&shift[j as usize], &own), &g);
                     });
@@ -155,6 +157,9 @@ impl<const D: usize> Solver<D> {
                 slope[a] += g[a];
             }
         });
+        if self.geometry.is_axisymmetric() {
+            slope = self.slope_of_sections(state, block, (i, row));
+        }
         if least < SURFACE {
             return [0.0; D];
         }

@@ -12,6 +12,7 @@ use super::barrier::Barrier;
 use super::implicit::Viscous;
 use super::lists::Lists;
 use super::packing::Packing;
+use super::ring_sections::Moved;
 use super::wall_friction::Friction;
 use super::{Plan, Scheme, Solver, explicit, paper_a, paper_b, pore, rest, texture, turning};
 
@@ -130,6 +131,7 @@ impl<const D: usize> Solver<D> {
             paper_a: paper_a::Work::default(),
             paper_b: paper_b::Work::default(),
             before: Vec::new(),
+            moved: Moved::default(),
         }
     }
 

@@ -3,6 +3,7 @@
 
 use crate::state::State;
 
+use super::ring_sections::Moved;
 use super::{OnMove, Scheme, Solver, SolverError, StepBound, StepInputs, SubStep};
 
 impl<const D: usize> Solver<D> {
@@ -59,6 +60,10 @@ impl<const D: usize> Solver<D> {
         let came = self.feed(state, inputs.rates, dt);
         if came {
             self.sweep_kinematics_in_valid_lists(state, true);
+        }
+        if !self.moved.before.is_empty() {
+            on_move(&self.moved.before, &self.moved.after);
+            self.moved = Moved::default();
         }
         if came || state.steps.is_multiple_of(self.numerics.seepage_interval) {
             self.seep(state);

@@ -26,6 +26,7 @@ mod phases;
 mod pores;
 mod rest;
 mod rheology;
+mod ring_sections;
 mod roofs;
 mod seams;
 mod silo;

@@ -71,6 +71,7 @@ impl Lift<'_> {
                 .unwrap_or(u32::MAX),
             sleep: raw.sleep.as_ref()?.value.0,
             seepage_interval: raw.seepage_interval.as_ref()?.value.0,
+            resize_rings: raw.resize_rings.as_ref()?.value.0,
             jitter: raw.jitter.as_ref()?.value.0,
             seed: raw.seed.as_ref()?.value.0,
         })

@@ -46,6 +46,7 @@ fn keys(raw: &RawNumerics) -> Vec<Key<'_>> {
         ),
         ("rotation", IMPLICIT, place(&raw.rotation)),
         ("seepage_interval", IMPLICIT, place(&raw.seepage_interval)),
+        ("resize_rings", IMPLICIT, place(&raw.resize_rings)),
         ("solver_tolerance", IMPLICIT, place(&raw.solver_tolerance)),
         (
             "solver_max_iterations",

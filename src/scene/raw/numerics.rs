@@ -63,6 +63,8 @@ table! {
         optional sleep: Flag, default true;
         /// Scheme implicit: internal steps from one solve of the pore pressure of saturated beds to the next; 1 solves it in every step. 4 changes depths as another seed does (0.3 to 1.2 % rms over 2 s of the reduced silted dam), 16 by 5 %.
         optional seepage_interval: Whole, in Range::within(1.0, 1000.0), default 4;
+        /// Axisymmetric scenes of scheme implicit: whether a ring that has grown to more than 1.5 dp^2 of section on its way to the axis is halved, and two that have shrunk below 0.25 dp^2 each on their way out are joined.
+        optional resize_rings: Flag, default true;
         /// Random displacement of the starting lattice, over the spacing. Every other row is then half a spacing aside, and places are evened out. 0, scenes of rings and the schemes of the papers: a square lattice. Fluids in scenes of rings are not displaced.
         optional jitter: Ratio, in Range::within(0.0, 0.4), default 0.1;
         /// Seed of that displacement.
