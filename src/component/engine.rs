@@ -169,6 +169,12 @@ pub(crate) trait Engine: Send {
     /// They are not such a state.
     fn check(&self, bytes: &[u8]) -> Result<(), String>;
 
+    /// Keeps the state as it is in memory, in place of what was kept before.
+    fn keep(&mut self);
+
+    /// Goes back to what was kept last, which is kept no more; whether anything was.
+    fn back_to_kept(&mut self) -> bool;
+
     /// The account of material.
     fn ledger(&self) -> MassLedger;
 

@@ -83,6 +83,30 @@ impl Component {
         self.take_over(life, engine)
     }
 
+    /// Keeps the state as it is in memory, in place of what was kept before. That copies the particles and makes no bytes:
+    /// it costs little beside a step, so that each step may be preceded by it. A step that fails leaves a state that none
+    /// goes on from; this is the way back.
+    pub fn keep(&mut self) {
+        self.kept = Some(self.life.clone());
+        self.engine.keep();
+    }
+
+    /// Goes back to the state that [`Component::keep`] kept last, which is kept no more; the stop time stays. Allowed in
+    /// every mode. False, and nothing happens, where none has been kept since the component was made, reset, or built for
+    /// other parameters.
+    pub fn back_to_kept(&mut self) -> bool {
+        let Some(life) = self.kept.take() else {
+            return false;
+        };
+        if !self.engine.back_to_kept() {
+            return false;
+        }
+        let stop = self.life.stop;
+        self.life = Life { stop, ..life };
+        self.step_failed = false;
+        true
+    }
+
     /// Whether [`Component::restore`] would take these bytes, as far as can be told without building anything.
     ///
     /// # Errors

@@ -89,6 +89,8 @@ pub struct Component {
     /// See [`Component::step_failed`]: no part of the state.
     step_failed: bool,
     life: Life,
+    /// What [`Component::back_to_kept`] goes back to, beside the engine's part: no part of the state.
+    kept: Option<Life>,
 }
 
 impl Component {
@@ -114,6 +116,7 @@ impl Component {
             host: HostSettings::of(scene),
             step_failed: false,
             life,
+            kept: None,
         })
     }
 

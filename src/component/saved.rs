@@ -15,15 +15,20 @@ pub(super) struct Saved<const D: usize> {
 }
 
 impl<const D: usize> Saved<D> {
-    /// The state and the counts of its sections as bytes.
+    /// A copy of the state, with the counts of its sections.
+    pub(super) fn of(state: &State<D>, sampler: &Sampler<D>) -> Self {
+        Self {
+            state: state.clone(),
+            crossed: sampler.crossed(),
+        }
+    }
+
+    /// The same as bytes.
     ///
     /// # Errors
     /// They are too many.
     pub(super) fn encode(state: &State<D>, sampler: &Sampler<D>) -> Result<Vec<u8>, String> {
-        snapshot::encode(&Self {
-            state: state.clone(),
-            crossed: sampler.crossed(),
-        })
+        snapshot::encode(&Self::of(state, sampler))
     }
 
     /// Takes saved bytes apart; refuses what does not fit this scene, whose state is `now`.

@@ -26,6 +26,8 @@ struct Simulation<const D: usize> {
     still: OnceLock<Vec<Reading>>,
     /// Internal steps done when the communication step began, if the scene slept then.
     slept_at: Option<u64>,
+    /// What [`Engine::back_to_kept`] goes back to.
+    kept: Option<Saved<D>>,
     devices: Devices,
     walls: usize,
     /// Largest rate of each inflow [kg/s].
@@ -63,6 +65,7 @@ impl<const D: usize> Simulation<D> {
             solids: Solids::new(scene),
             still: OnceLock::new(),
             slept_at: None,
+            kept: None,
             devices: Devices::default(),
             walls: scene.walls.len(),
             most_rate: scene.inflows.iter().map(|i| i.max_rate).collect(),
@@ -155,6 +158,16 @@ impl<const D: usize> Simulation<D> {
         self.refresh_devices();
     }
 
+    /// Goes to a state of this scene.
+    fn take_over(&mut self, saved: Saved<D>) {
+        self.solver.renew_threads();
+        self.sampler.set_crossed(&saved.crossed);
+        self.state = saved.state;
+        self.still = OnceLock::new();
+        self.solver.resume(&self.state);
+        self.refresh_devices();
+    }
+
     fn failed(&self, error: &crate::solver::SolverError) -> SolverError {
         SolverError {
             what: error.to_string(),
@@ -231,18 +244,24 @@ impl<const D: usize> Engine for Simulation<D> {
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), String> {
         let saved = Saved::decode(bytes, &self.state, &self.solver, &self.sampler)?;
-        // As many as there are sections, as was just checked.
-        self.solver.renew_threads();
-        self.sampler.set_crossed(&saved.crossed);
-        self.state = saved.state;
-        self.still = OnceLock::new();
-        self.solver.resume(&self.state);
-        self.refresh_devices();
+        // As many counts as there are sections, as was just checked.
+        self.take_over(saved);
         Ok(())
     }
 
     fn check(&self, bytes: &[u8]) -> Result<(), String> {
         Saved::decode(bytes, &self.state, &self.solver, &self.sampler).map(drop)
+    }
+
+    fn keep(&mut self) {
+        // What was kept goes first: there are never three copies.
+        self.kept = None;
+        self.kept = Some(Saved::of(&self.state, &self.sampler));
+    }
+
+    fn back_to_kept(&mut self) -> bool {
+        let kept = self.kept.take();
+        kept.map(|kept| self.take_over(kept)).is_some()
     }
 
     fn ledger(&self) -> MassLedger {

@@ -1,6 +1,7 @@
 //! The built program from outside: exit codes, messages, the files of a run, Ctrl-C, kill and resume to the bit.
 
 mod endings;
+mod going_on;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -415,7 +416,8 @@ fn a_failed_step_keeps_what_was_computed_before() {
     );
     let summary = desk.summary("run");
     assert_eq!(summary["status"], "failed");
-    assert!(summary["error"].as_str().unwrap().contains("step failed"));
+    let error = summary["error"].as_str().unwrap();
+    assert!(error.starts_with("step failed: "), "{error}");
     let columns = columns(&desk.table("run"));
     assert!(columns["time"].len() > 1, "no row before the failure");
     assert_eq!(columns["time"].last().copied(), summary["time"].as_f64());

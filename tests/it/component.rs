@@ -150,6 +150,39 @@ fn failed_step_leaves_time_and_outputs_at_the_last_good_step() {
     step(&mut falling, 1);
 }
 
+#[test]
+fn a_failed_step_is_gone_back_from_to_the_state_that_was_kept() {
+    let mut falling = stepping("tests/scenes/no_floor.toml");
+    let h = falling.scene().run.step;
+    assert!(!falling.back_to_kept(), "nothing has been kept");
+    let mut good;
+    loop {
+        falling.keep();
+        good = falling.save().unwrap();
+        if falling.do_step(falling.time(), h).is_err() {
+            break;
+        }
+        assert!(falling.time() < 10.0, "nothing fell out of the domain");
+    }
+    assert!(falling.back_to_kept());
+    assert!(falling.save().unwrap() == good);
+    assert_eq!(
+        (falling.mode(), falling.step_failed()),
+        (Mode::Stepping, false)
+    );
+    assert!(!falling.back_to_kept(), "it is kept no more");
+    // It goes on with the bits of one that was restored.
+    let mut restored = stepping("tests/scenes/no_floor.toml");
+    restored.restore(&good).unwrap();
+    for one in [&mut falling, &mut restored] {
+        one.do_step(one.time(), 0.001 * h).unwrap();
+    }
+    assert_eq!(falling.state_hash(), restored.state_hash());
+    falling.keep();
+    falling.reset().unwrap();
+    assert!(!falling.back_to_kept(), "a reset forgets it");
+}
+
 /// Saved bytes hold no stop time: who takes them over goes as far as it was told itself.
 #[test]
 fn the_stop_time_stays_with_whom_it_was_told() {

@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::lock::{self, Lock};
+use super::shell_word;
 use crate::cli::CliError;
 use crate::whole_file;
 
@@ -65,10 +66,7 @@ impl Folder {
                 "{shown} is not empty and was not made by `sandgate run` (found {}); give a new or an empty folder",
                 files[0]
             ))),
-            (Some(_), false) => Err(CliError::Usage(format!(
-                "{shown} holds an earlier run; give another folder, add --force to replace that run, \
-                 or go on with it by --resume {shown}/checkpoint.state"
-            ))),
+            (Some(_), false) => Err(CliError::Usage(taken(path))),
             (Some(_), true) => {
                 for name in files.iter().filter(|name| is_ours(name)) {
                     let file = path.join(name);
@@ -149,6 +147,28 @@ pub(super) fn goes_on(file: &Path, out: Option<&Path>) -> bool {
     let real = |path: &Path| std::fs::canonicalize(path).ok();
     earlier_summary(own).is_some()
         && out.is_none_or(|out| real(out).is_some_and(|out| real(own) == Some(out)))
+}
+
+/// Whether a file stands, or would stand, in the folder of a run.
+pub(super) fn holds_run(file: &Path) -> bool {
+    earlier_summary(parent(file)).is_some()
+}
+
+/// What to do about a folder with an earlier run; that can be gone on with only where its checkpoint is there.
+fn taken(path: &Path) -> String {
+    let shown = path.display();
+    let checkpoint = path.join("checkpoint.state");
+    if checkpoint.is_file() {
+        let checkpoint = shell_word(&checkpoint);
+        return format!(
+            "{shown} holds an earlier run; give another folder, add --force to replace that run, or go on with it by \
+             --resume {checkpoint}"
+        );
+    }
+    format!(
+        "{shown} holds an earlier run, which left no checkpoint.state to go on from; give another folder, or add --force to \
+         replace that run (--checkpoint-every saves states on the way)"
+    )
 }
 
 fn parent(file: &Path) -> &Path {

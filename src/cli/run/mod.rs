@@ -15,6 +15,7 @@ mod series;
 mod session;
 mod summary;
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::{CliError, load_scene, quantity, stop};
@@ -44,7 +45,8 @@ pub(super) struct Args {
     /// Communication step, "10 ms" or plain seconds [default: the scene's run.step]
     #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]
     step: Option<f64>,
-    /// Save checkpoint.state every so much simulated time (it is saved at the end and at Ctrl-C in any case)
+    /// Save checkpoint.state every so much simulated time, also for runs that are killed (it is saved at the end and at
+    /// Ctrl-C in any case, and when a step fails as it was before that step)
     #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]
     checkpoint_every: Option<f64>,
     /// Go on from a saved state, and in its folder unless --out names another
@@ -61,7 +63,7 @@ The folder then holds:
   gauges.csv        time and all scalar inputs and outputs, a row each communication point, SI, exact decimals
   gauges.svg        gauges, devices and inputs over time
   summary.json      every final figure, extremes, steps, CPU and wall time, mass account, state hash
-  checkpoint.state  the state to go on from
+  checkpoint.state  the state to go on from: the last one, or that before a step that failed
 
 One run at a time writes to a folder: sandgate.lock is locked there until the end.
 Ctrl-C finishes the communication step, saves all of these and prints the command to go on with.
@@ -94,8 +96,14 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             Some(read.map_err(|source| CliError::File {
                 action: "read saved state",
                 path: file.clone(),
+                remedy: match source.kind() {
+                    ErrorKind::NotFound if folder::holds_run(file) => {
+                        "the run there left none: --checkpoint-every saves them on the way; start it again, with --out and \
+                         --force in the same folder"
+                    }
+                    _ => "give the checkpoint.state of an earlier run",
+                },
                 source,
-                remedy: "give the checkpoint.state of an earlier run",
             })?)
         }
         None => None,

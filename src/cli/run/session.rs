@@ -47,7 +47,7 @@ impl Outcome {
         match self {
             Self::Finished => ("finished", None),
             Self::Interrupted => ("interrupted", None),
-            Self::Failed(error) => ("failed", Some(error.to_string())),
+            Self::Failed(error) => ("failed", Some(error.as_warning())),
         }
     }
 
@@ -211,6 +211,7 @@ impl Session {
 
     fn step_to(&mut self, next: f64) -> Result<(), CliError> {
         let time = self.component.time();
+        self.component.keep();
         let (references, values) = self.component.scheduled(time);
         self.component.set(&references, &values)?;
         self.log.inputs(&self.component, &references, &values);
@@ -260,6 +261,19 @@ impl Session {
         Ok(())
     }
 
+    /// Saves the state that the run ends with, for the last time. That of a failed step is none to go on from: the one before
+    /// it is saved in its place, and what then stands in the summary is of that one, too. Answers its time [s], if so.
+    fn last_checkpoint(&mut self, outcome: &mut Outcome) -> Option<f64> {
+        let went_back = self.component.mode() == Mode::Failed && self.component.back_to_kept();
+        let saved = match self.component.mode() {
+            Mode::Stepping => self.checkpoint(),
+            _ => self.series.flush(),
+        };
+        let time = (went_back && saved.is_ok()).then(|| self.component.time());
+        outcome.fails_by(saved);
+        time
+    }
+
     fn plan_checkpoint(&mut self) {
         if let Some(every) = self.plan.checkpoint_every {
             let time = self.component.time();
@@ -285,10 +299,7 @@ impl Session {
             Err(_) if matches!(outcome, Outcome::Failed(CliError::Log(_))) => {}
             finished => outcome.fails_by(finished),
         }
-        outcome.fails_by(match self.component.mode() {
-            Mode::Stepping => self.checkpoint(),
-            _ => self.series.flush(),
-        });
+        let before_failure = self.last_checkpoint(&mut outcome);
         let title = &self.component.scene().title;
         match plot::svg(title, &self.series) {
             Ok(svg) => outcome.fails_by(self.folder.replace("gauges.svg", svg.as_bytes())),
@@ -299,13 +310,21 @@ impl Session {
         outcome.fails_by(summary);
         let said = say(&summary::table(&self, outcome.words().0));
         outcome.fails_by(said);
+        let checkpoint = self.folder.file("checkpoint.state");
+        if let Some(time) = before_failure {
+            tell!(
+                "saved in {}: the state at t = {time} s, before the step that failed. With the same scene, inputs and steps it \
+                 fails there again",
+                checkpoint.display()
+            );
+        }
         match outcome {
             Outcome::Finished => Ok(()),
             Outcome::Interrupted => Err(CliError::Interrupted(format!(
                 "interrupted at t = {} s; everything is saved. Go on with:\n  {} --resume {}",
                 self.component.time(),
                 self.plan.go_on,
-                shell_word(&self.folder.file("checkpoint.state"))
+                shell_word(&checkpoint)
             ))),
             Outcome::Failed(error) => Err(error),
         }

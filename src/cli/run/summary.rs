@@ -167,12 +167,6 @@ pub(super) fn table(session: &Session, status: &str) -> String {
         ),
         format!("  state   {}", component.state_hash()),
     ];
-    if component.step_failed() {
-        lines.push(
-            "  (internal steps and iterations up to the failure; mass and outputs of the last good step)"
-                .to_owned(),
-        );
-    }
     lines.push(String::new());
     lines.extend(variable_rows(session));
     lines.push(String::new());
