@@ -7,6 +7,7 @@ use toml::de::DeValue;
 use super::problems::{Place, Problems};
 use super::range::Range;
 use super::read::{At, Field, Node};
+use crate::units::shown;
 
 /// Whether a key must be there.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -57,7 +58,7 @@ impl KeySpec {
             } else {
                 format!("choose a value in this range; write for example {example}")
             };
-            let found = format!("{number} {unit}");
+            let found = format!("{} {unit}", shown(number));
             problems.report(node.place(), found.trim(), range.text(T::unit()), remedy);
             return None;
         }

@@ -2,6 +2,16 @@
 
 use super::*;
 
+// Far beyond anything real, and far from where sums overflow, which a step would report as a failure of its own.
+/// Grain diameters: up to that of a mountain.
+const GRAIN_DIAMETERS: Range = Range::above_to(0.0, 1e3);
+/// Densities: from well below gases to well above metals.
+const DENSITIES: Range = Range::within(1e-6, 1e6);
+/// Cohesions and yield stresses: up to a thousand times those of rock and steel.
+const STRENGTHS: Range = Range::within(0.0, 1e12);
+/// Consistencies: up to more than that of the Earth's mantle.
+const CONSISTENCIES: Range = Range::within(0.0, 1e24);
+
 tagged! {
     /// A material: a law and its parameters.
     RawMaterial by law {
@@ -28,15 +38,15 @@ macro_rules! inertial_law {
                 optional inertial_number_scale: Ratio, in Range::above(0.0);
                 $($own)*
                 /// Grain diameter.
-                optional grain_diameter: Length, in Range::above(0.0);
+                optional grain_diameter: Length, in GRAIN_DIAMETERS;
                 /// Density of the grains' own material.
-                optional grain_density: Density, in Range::above(0.0);
+                optional grain_density: Density, in DENSITIES;
                 /// Largest volume fraction of grains (0.6 if left out).
                 optional phi_max: Ratio, in Range::above_to(0.0, 1.0);
                 /// Smallest volume fraction of grains that touch, below phi_max (0.5 if left out). Looser material has parted: it carries no stress until it is this dense again.
                 optional phi_min: Ratio, in Range::above_to(0.0, 1.0);
                 /// Shear strength without pressure, added to friction. It is no tensile strength: material that is pulled parts.
-                optional cohesion: Pressure, in Range::from(0.0), default 0;
+                optional cohesion: Pressure, in STRENGTHS, default 0;
                 /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
                 optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
                 /// Name of the fluid material that fills the pores: friction is then made of the effective pressure, and grains of mu(I) weigh what they do with their pores full. Left out: dry.
@@ -79,13 +89,13 @@ table! {
         /// How the angle becomes a friction coefficient.
         optional r#match: AngleMatchWord, default "plane_strain";
         /// Density of the material at rest, pores and what fills them included.
-        required density: Density, in Range::above(0.0);
+        required density: Density, in DENSITIES;
         /// Viscous stress beside friction, consistency x (shear rate)^flow_index; 0 is none.
-        optional consistency: Viscosity, in Range::from(0.0), default 0;
+        optional consistency: Viscosity, in CONSISTENCIES, default 0;
         /// Flow index: 1 makes the consistency a viscosity; below 1 shear-thinning, above 1 shear-thickening.
         optional flow_index: Ratio, in Range::within(0.1, 3.0), default 1;
         /// Mohr-Coulomb cohesion c. It is no tensile strength: material that is pulled parts.
-        optional cohesion: Pressure, in Range::from(0.0), default 0;
+        optional cohesion: Pressure, in STRENGTHS, default 0;
         /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
         optional bulk_friction: Ratio, in Range::within(0.0, 10.0), default 0;
         /// Name of the fluid material that fills the pores: friction is then made of the effective pressure, and grains of mu(I) weigh what they do with their pores full. Left out: dry.
@@ -127,13 +137,13 @@ table! {
         /// Values to start from.
         optional preset: FluidPreset;
         /// Density at rest.
-        optional density: Density, in Range::above(0.0);
+        optional density: Density, in DENSITIES;
         /// Consistency K: the viscosity where flow_index is 1; in Pa s^n otherwise.
-        optional consistency: Viscosity, in Range::from(0.0);
+        optional consistency: Viscosity, in CONSISTENCIES;
         /// Flow index n (1 if left out): 1 Newton and Bingham, below 1 shear-thinning, above 1 shear-thickening.
         optional flow_index: Ratio, in Range::within(0.1, 3.0);
         /// Yield stress (0 if left out): below it nothing shears, and with it the fluid hangs together: it bears tension of up to (1 + pi) times its shear stress.
-        optional yield_stress: Pressure, in Range::from(0.0);
+        optional yield_stress: Pressure, in STRENGTHS;
         /// Artificial viscosity alpha, what the viscosity of Newton's fluids is made up to where they are compressed or hardly move: damps what water leaves undamped, adds little to what is sheared alone, and nothing to a fluid whose viscosity is at least alpha density h c/(2 (D + 2)). Fluids that yield or thin have none.
         optional artificial_viscosity: Ratio, in Range::within(0.0, 1.0), default 0.02;
         /// Artificial sound speed of this fluid, not above that of the scene; left out: that of the scene.
