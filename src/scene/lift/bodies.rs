@@ -8,9 +8,6 @@ use crate::scene::raw::{At, Coordinates, Entry, Length, List, Place, RawBody, Ra
 use crate::scene::types::{Body, Dimension, VelocityProfile};
 use crate::shape::{Shape, cut_below};
 
-/// Most corners of an outline: pairs of edges are compared.
-pub(super) const MOST_CORNERS: usize = 1000;
-
 const PLANAR_BOX: &str = "box = { lower = [0, 0], upper = [0.1, 0.1] }";
 const SPACE_BOX: &str = "box = { lower = [0, 0, 0], upper = [0.1, 0.1, 0.1] }";
 
@@ -154,40 +151,6 @@ impl Lift<'_> {
         })
     }
 
-    /// Corners of an outline in the plane; `in_space` is what there is instead in space.
-    pub(super) fn outline(
-        &mut self,
-        at: &At<List<Coordinates<Length>>>,
-        least: usize,
-        in_space: &str,
-    ) -> Option<Vec<[f64; 2]>> {
-        let corners = &at.value.0;
-        if !self.planar() {
-            self.problems.report(
-                &at.place,
-                "a planar outline in a scene with dimension = 3",
-                "outlines only where dimension = 2",
-                format!("use {in_space}, or set dimension = 2"),
-            );
-            return None;
-        }
-        if corners.len() < least || corners.len() > MOST_CORNERS {
-            self.problems.report(
-                &at.place,
-                format!("{} points", corners.len()),
-                format!("{least} to {MOST_CORNERS} points"),
-                "write it as [[x, y], [x, y], ...]",
-            );
-            return None;
-        }
-        let mut points = Vec::new();
-        for corner in corners {
-            let [x, y, _] = self.vector(corner)?;
-            points.push([x, y]);
-        }
-        Some(points)
-    }
-
     /// A simple polygon with an area.
     fn polygon(&mut self, at: &At<List<Coordinates<Length>>>) -> Option<Vec<[f64; 2]>> {
         let points = self.outline(at, 3, "box or column")?;
@@ -195,15 +158,9 @@ impl Lift<'_> {
         let count = points.len();
         for i in 0..count {
             let (a, b) = (points[i], points[(i + 1) % count]);
-            if (b[0] - a[0]).hypot(b[1] - a[1]) <= eps {
-                self.problems.report(
-                    &at.value.0[(i + 1) % count].place,
-                    "the same point as the one before it",
-                    "corners apart from each other",
-                    "delete it; the last corner joins the first by itself",
-                );
-                return None;
-            }
+            let place = &at.value.0[(i + 1) % count].place;
+            let remedy = "delete it; the last corner joins the first by itself";
+            self.check_apart(place, a, b, remedy)?;
         }
         if let Some((i, j)) = crossing_edges(&points, true, eps) {
             self.problems.report(

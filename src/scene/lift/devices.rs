@@ -104,18 +104,31 @@ impl Lift<'_> {
         if flux > 1e-6 * length(&area) * length(&velocity) {
             return Some(flux);
         }
-        let found = if length(&velocity) > 0.0 {
-            "a velocity that points into the face or along it"
+        let out = format!("write for example {}", self.example_of_velocity(area));
+        let (found, remedy) = if flux < -1e-6 * length(&area) * length(&velocity) {
+            let turn = "reverse the velocity, or swap from and to".to_owned();
+            ("a velocity that points into the face", turn)
+        } else if length(&velocity) > 0.0 {
+            ("a velocity along the face", out)
         } else {
-            "a velocity of 0"
+            ("a velocity of 0", out)
         };
         self.problems.report(
             &raw.velocity.as_ref()?.place,
             found,
             "a velocity to the left of the way from `from` to `to` (in space: along (to - from) x span)",
-            "reverse the velocity, or swap from and to",
+            remedy,
         );
         None
+    }
+
+    /// A velocity straight out of a face, whose normal this is.
+    fn example_of_velocity(&self, normal: Point) -> String {
+        let unit = normalized(&normal).unwrap_or([1.0, 0.0, 0.0]);
+        // Half a metre a second, to millimetres, and without the sign of a zero.
+        let values = unit.map(|c| (0.5e3 * c).round() / 1e3 + 0.0);
+        let values: Vec<String> = values[..self.axes()].iter().map(f64::to_string).collect();
+        format!("velocity = [{}]", values.join(", "))
     }
 
     fn inflow_rate(&mut self, raw: &RawInflow, most: f64) -> Option<f64> {

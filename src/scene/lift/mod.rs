@@ -15,6 +15,7 @@ mod geometry;
 mod material;
 mod motion;
 mod numerics;
+mod outline;
 mod paper_a;
 mod paper_b;
 mod pressures;

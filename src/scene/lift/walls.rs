@@ -163,15 +163,7 @@ impl Lift<'_> {
         for i in 0..count {
             let next = (i + 1) % points.len();
             let (a, b) = (points[i], points[next]);
-            if (b[0] - a[0]).hypot(b[1] - a[1]) <= eps {
-                self.problems.report(
-                    &at.value.0[next].place,
-                    "a segment of length 0: the same point as the one before it",
-                    "points apart from each other",
-                    "delete this point",
-                );
-                return None;
-            }
+            self.check_apart(&at.value.0[next].place, a, b, "delete this point")?;
             segments.push((a, b));
         }
         if let Some((i, j)) = crossing_edges(&points, closed, eps) {

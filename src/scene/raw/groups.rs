@@ -18,6 +18,18 @@ pub(in crate::scene) struct Coordinates<Q> {
     quantity: PhantomData<Q>,
 }
 
+impl<Q: Scalar> Coordinates<Q> {
+    /// How to write one of each size. A value of every kind is wanted, so that units are seen.
+    fn examples() -> String {
+        let planar = match Q::QUANTITY {
+            Quantity::Length => "[0.1, \"20 mm\"]".to_owned(),
+            _ => Self::example(),
+        };
+        let space = planar.replacen('[', "[0, ", 1);
+        format!("write for example {planar}, in space {space}")
+    }
+}
+
 impl<Q: Scalar> Field for Coordinates<Q> {
     fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
         let elements = node.elements().unwrap_or_default();
@@ -27,7 +39,7 @@ impl<Q: Scalar> Field for Coordinates<Q> {
                 node.place(),
                 describe(node.value()),
                 format!("[x, y] in a planar scene, [x, y, z] in space; each {one}"),
-                "write for example [0.1, \"20 mm\"]".to_owned(),
+                Self::examples(),
             );
             return None;
         }
@@ -50,7 +62,13 @@ impl<Q: Scalar> Field for Coordinates<Q> {
     }
 
     fn example() -> String {
-        "[0, 0]".to_owned()
+        match Q::QUANTITY {
+            Quantity::Length => "[0, 0]".to_owned(),
+            // A direction.
+            Quantity::Ratio => "[1, 0]".to_owned(),
+            Quantity::Acceleration => "[0, \"-9.81 m/s^2\"]".to_owned(),
+            quantity => format!("[0, {:?}]", quantity.example()),
+        }
     }
 }
 
