@@ -48,6 +48,7 @@ pub(super) fn list(
         });
     };
     let (lower, upper) = (space.domain.lower, space.domain.upper);
+    let given = raw.level.as_ref().map(|level| level.value.0);
     if let Some(Shape::Box {
         lower: low,
         upper: high,
@@ -57,7 +58,11 @@ pub(super) fn list(
             let letter = ["x", "y", "z"][axis];
             let range = (lower[axis], upper[axis]);
             let text = |end: &str, top: bool| {
-                let level = if top { ": its fill level" } else { "" };
+                let level = match given {
+                    Some(_) if top => format!(", no lower than its fill level, body.{name}.level"),
+                    None if top => ": its fill level".to_owned(),
+                    _ => String::new(),
+                };
                 format!("{letter} of the {end} corner of body {name}{level}")
             };
             let up = space.up[axis];
@@ -67,7 +72,6 @@ pub(super) fn list(
             add(&key, highest, BodyKey::Upper(axis), high[axis], range);
         }
     }
-    let given = raw.level.as_ref().map(|level| level.value.0);
     // Corners of boxes move.
     let own = shape.filter(|shape| !matches!(shape, Shape::Box { .. }));
     let own = own.map(|shape| heights(shape.bounds(), space.up));

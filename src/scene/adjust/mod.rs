@@ -303,6 +303,24 @@ mod tests {
     }
 
     #[test]
+    fn where_a_box_has_a_level_that_is_its_fill_level() {
+        let text = include_str!("../../../tests/scenes/devices.toml");
+        let body = "box = { lower = [\"40 mm\", 0], upper = [\"120 mm\", \"20 mm\"] }";
+        assert!(text.contains(body));
+        let text = text.replace(body, &format!("{body}\nlevel = \"16 mm\""));
+        let scene = parse("level", &text).unwrap_or_else(|e| panic!("{e}"));
+        let row = |end: &str| scene.adjustables.iter().find(|a| a.name.ends_with(end));
+        let top = row(".upper_y").expect("a box has corners");
+        let level = row(".level").expect("it is given");
+        assert!(!top.description.contains(": its fill level"));
+        assert!(top.description.ends_with(&level.name), "{top:?}");
+        let filled = |changes: &[(&str, f64)]| with(&scene, changes).map(|s| s.bodies[0].level);
+        assert_eq!(filled(&[(&top.name, 0.018)]), Ok(Some(0.016)));
+        assert!(filled(&[(&top.name, 0.012)]).is_err());
+        assert_eq!(filled(&[(&level.name, 0.012)]), Ok(Some(0.012)));
+    }
+
+    #[test]
     fn what_fluids_and_saturated_beds_flow_by_can_be_changed() {
         let scene = dam();
         let changes = [
