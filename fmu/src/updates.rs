@@ -21,13 +21,15 @@ pub(crate) struct Updates {
 }
 
 impl Updates {
-    /// Calls the importer after an internal step.
+    /// Calls the importer after an internal step. `warned` is whether it has been told in this step that a time it gave is
+    /// not in it: as a rule it gives the same again after the next internal step, of which there may be hundreds.
     pub(crate) fn tell(
         self,
         moment: &mut Intermediate<'_>,
         log: &Log,
         journal: &mut Journal,
         door: &Door<'_>,
+        warned: &mut bool,
     ) -> Wish {
         let pause = Pause {
             time: moment.time(),
@@ -45,7 +47,9 @@ impl Updates {
         let inputs = guest.inputs;
         let wish = match wanted {
             Some(time) if self.early_return_allowed => {
-                if let Some(note) = outside(time, moment) {
+                let note = outside(time, moment).filter(|_| !*warned);
+                if let Some(note) = note {
+                    *warned = true;
                     log.say(Category::Warning, Status::Warning, &note);
                     journal.warning(moment.component(), &note);
                 }

@@ -245,6 +245,12 @@ impl Rig {
         value
     }
 
+    /// How many messages have this in them.
+    fn told(&self, part: &str) -> usize {
+        let messages = self.world.messages.lock().expect("no panic inside");
+        messages.iter().filter(|m| m.contains(part)).count()
+    }
+
     /// Whether a message has this in it.
     fn was_told(&self, part: &str) {
         let messages = self.world.messages.lock().expect("no panic inside");
@@ -341,6 +347,14 @@ fn a_step_ends_early_only_if_allowed_and_then_exactly_there() {
     let mut beyond = Rig::new(&scene, wish(2.0 * h), true, &[], true);
     assert_eq!(beyond.step(0.0, h), (false, h));
     beyond.was_told(&format!("the step; it ends at {h} s"));
+    // Once a step, however many internal steps it has.
+    for (k, t) in [(1, h), (2, 2.0 * h)] {
+        let seen = beyond.world.seen.len();
+        assert!(seen > k, "{seen} internal steps in {k}");
+        assert_eq!(beyond.told("earlyReturnTime"), k);
+        beyond.world.plan.end_at = Some(t + 2.0 * h);
+        beyond.step(t, h);
+    }
 }
 
 #[test]

@@ -80,9 +80,10 @@ impl Instance {
         };
         let log = self.log.clone();
         self.step_with(t, h, |component, journal, t, h| {
+            let mut warned = false;
             let mut tell = |moment: &mut Intermediate<'_>| {
                 journal.during_step();
-                updates.tell(moment, &log, journal, door)
+                updates.tell(moment, &log, journal, door, &mut warned)
             };
             component.do_step_watched(t, h, &mut tell)
         })
