@@ -227,7 +227,7 @@ fn inflow_rows(i: usize, inflow: &Inflow) -> impl Iterator<Item = Row> {
             Source::InflowRate(i),
             inflow.rate,
             inflow.max_rate,
-            format!("mass wanted from inflow {name} per second"),
+            format!("mass wanted from inflow {name} per second; what comes, in whole rows, is inflow.{name}.mass"),
         ),
         Row::output(
             format!("inflow.{name}.actual_rate"),
@@ -239,7 +239,7 @@ fn inflow_rows(i: usize, inflow: &Inflow) -> impl Iterator<Item = Row> {
             format!("inflow.{name}.mass"),
             "kg",
             Source::InflowMass(i),
-            format!("mass that inflow {name} let in since the start"),
+            format!("mass that inflow {name} let in since the start: behind the sum of its rate by up to a row, and by what was lost while blocked"),
         ),
         Row::output(
             format!("inflow.{name}.blocked"),

@@ -77,7 +77,7 @@ table! {
 }
 
 table! {
-    /// A source: rows of particles enter through the face from `from` to `to`, on its left side, at a set velocity. Rows come in only where a spacing before the face is free: it must be above the surface or in free room, since a source under material is blocked.
+    /// A source: rows of particles enter through the face from `from` to `to`, on its left side, at a set velocity. Rows come in only where a spacing before the face is free: it must be above the surface or in free room, since a source under material is blocked. Rows come whole: what has come in is behind the rate by up to one row, and what is then pending waits, with the rate at 0, until it is above 0 again. While it is blocked one row stays due, and what is asked for beyond it is lost, as is the row itself when the rate goes to 0 meanwhile. Who needs an amount watches the output inflow.NAME.mass, what has come in, and not the sum of the rate over time.
     RawInflow {
         /// Name of the material that enters.
         required material: Text;
