@@ -20,6 +20,8 @@ pub(super) struct FaceSums<const D: usize> {
     pub(super) around: Tensor<D>,
     /// sum g.
     pub(super) s: Vector<D>,
+    /// What of it is there because rings and their walls are not of one length; 0 in the plane, in space and without friction.
+    pub(super) by_length: Vector<D>,
     /// sum v_w (x) g.
     pub(super) carried: Tensor<D>,
     /// sum c (P g)(P g)^T, c = 2 (D + 2)/(|g| r).
@@ -49,6 +51,7 @@ impl<const D: usize> FaceSums<D> {
             velocity: [0.0; D],
             around: [[0.0; D]; D],
             s: [0.0; D],
+            by_length: [0.0; D],
             carried: [[0.0; D]; D],
             pair: [[0.0; D]; D],
             dragged: [0.0; D],
@@ -83,6 +86,14 @@ impl<const D: usize> FaceSums<D> {
             scale(dot(n, a), n)
         } else {
             *a
+        }
+    }
+
+    /// Adds what the lengths of rings make of a point: this part of g.
+    #[inline(always)]
+    pub(super) fn add_length(&mut self, part: f64, g: &Vector<D>) {
+        for k in 0..D {
+            self.by_length[k] += part * g[k];
         }
     }
 

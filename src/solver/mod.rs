@@ -19,6 +19,7 @@ mod equation_of_state;
 mod error;
 mod explicit;
 mod face_sums;
+mod flat_face;
 mod fluid_row;
 mod friction_row;
 mod grid;

@@ -25,7 +25,7 @@ struct Pushing<'a, const D: usize> {
 struct Reach<const D: usize> {
     /// V_i w F x, its part of the sum that stress is multiplied with.
     g: Vector<D>,
-    /// The same for pressure: nothing along a flat face that rubs.
+    /// The same for pressure: without the lattices' phase along a flat face that rubs.
     of_pressure: Vector<D>,
     /// Normal of a face with free slip, in a bend as the particle sees it.
     projection: Option<Vector<D>>,
@@ -200,9 +200,12 @@ impl<const D: usize> Solver<D> {
         let vf = self.wall_volume(pushing.i, w, self.walls.weight[w as usize]) * self.kernel.f(r);
         let g = scale(vf, x);
         let projection = self.wall_projection(&state.grains.position[pushing.i], w, state);
-        let flat = pushing.seen.is_some_and(|w| w.flat);
+        let smoothed = pushing.seen.map_or(0.0, |w| w.smoothed);
         let of_pressure = match projection {
-            Some(n) if flat => scale(dot(&n, &g), &n),
+            Some(n) if smoothed > 0.0 => {
+                let less = smoothed * (1.0 - self.ring_part(pushing.i, w));
+                sub(&g, &scale(less, &along(&n, &g)))
+            }
             _ => g,
         };
         let bend = projection.and_then(|n| self.bend_at(w, x, &n));

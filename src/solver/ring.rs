@@ -145,6 +145,17 @@ impl<const D: usize> Solver<D> {
         slope
     }
 
+    /// (w_w - w_i)/(w_w + w_i): the part of ring i's g of a wall point that it has because they are not of one length [1]; 0 unless
+    /// particles are rings.
+    #[inline(always)]
+    pub(super) fn ring_part(&self, i: usize, wall: u32) -> f64 {
+        if !self.geometry.is_axisymmetric() {
+            return 0.0;
+        }
+        let ratio = self.walls.position[wall as usize][0] * self.rings[i].hoop;
+        (ratio - 1.0) / (ratio + 1.0)
+    }
+
     /// dp^2 [m^2].
     #[inline(always)]
     fn lattice_cell(&self) -> f64 {

@@ -53,28 +53,7 @@ impl<const D: usize> Contact<D> {
     }
 }
 
-/// What a particle sees of walls, as far as it tells whether that is one flat face with friction.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Face<const D: usize> {
-    /// Nothing yet.
-    None,
-    /// Points with friction and this normal only.
-    Flat(Vector<D>),
-    /// Something else, too.
-    Other,
-}
-
-impl<const D: usize> Face<D> {
-    /// With one more point; `normal` if it has friction.
-    pub(super) fn with(self, normal: Option<Vector<D>>) -> Self {
-        match (self, normal) {
-            (Face::None, Some(n)) => Face::Flat(n),
-            (Face::Flat(m), Some(n)) if same_normal(&m, &n) => self,
-            _ => Face::Other,
-        }
-    }
-}
-
-fn same_normal<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> bool {
+/// Whether two faces go on from each other.
+pub(super) fn same_normal<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> bool {
     dot(a, b) > 1.0 - 1e-9
 }

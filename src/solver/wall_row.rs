@@ -12,9 +12,10 @@ use super::Solver;
 use super::barrier::{Nearness, Rub};
 use super::bend::Turning;
 use super::face_sums::FaceSums;
+use super::flat_face::FlatFace;
 use super::fluid_row::Row;
 use super::pair::WallRow;
-use super::wall_contact::{Contact, Face};
+use super::wall_contact::Contact;
 
 /// Distance to the nearest wall point from which on (W5) cannot act, over the spacing [1]: on the surface it is 0.87 at most, and
 /// even a point missing inside a wall has its neighbours nearer.
@@ -42,7 +43,7 @@ impl<const D: usize> Solver<D> {
         let is_fluid = material.is_fluid();
         let bears_fluid = meets_fluid || (self.has_pores && !is_fluid);
         let mut w = WallRow::new(row as u32);
-        let mut flatness = Face::None;
+        let mut flat = FlatFace::NONE;
         let mut face: Option<FaceSums<D>> = None;
         let mut nearest2 = f64::INFINITY;
         let mut turning = Turning::NONE;
@@ -71,7 +72,7 @@ impl<const D: usize> Solver<D> {
                 let next = FaceSums::new(group, normal, spec.free_slip, bend);
                 if let Some(done) = face.replace(next) {
                     self.add_turn(&done, &mut w, &mut turning);
-                    flatness = self.add_face(&done, i, (contacts, first_contact), &mut w, flatness);
+                    self.add_face(&done, i, (contacts, first_contact), &mut w, &mut flat);
                 }
             }
             let Some(face) = &mut face else { continue };
@@ -81,6 +82,9 @@ impl<const D: usize> Solver<D> {
             face.velocity = *vw;
             add_outer(&mut face.around, -1.0, &x, &g);
             face.add(&g, 2.0 * dissipation / (-vf * r2), vw);
+            if spec.friction > 0.0 {
+                face.add_length(self.ring_part(i, wall), &g);
+            }
             if is_fluid {
                 face.add_moment(-vf, &x, vw);
                 if !face.free_slip {
@@ -107,7 +111,8 @@ impl<const D: usize> Solver<D> {
         if !self.geometry.is_axisymmetric() {
             turning.complete(&sums.moment, &mut w);
         }
-        let flatness = self.add_face(&last, i, (contacts, first_contact), &mut w, flatness);
+        self.add_face(&last, i, (contacts, first_contact), &mut w, &mut flat);
+        flat.smooth(&mut w, self.numerics.spacing);
         if nearest2 < (CLEAR * self.numerics.spacing).powi(2) {
             let nearness = self.nearness(xi, vi, near, material);
             w.barrier = self.barrier.push(&nearness, self.sound_speed_of(material));
@@ -121,12 +126,6 @@ impl<const D: usize> Solver<D> {
             for c in 0..D {
                 sums.gradient[a][c] += wall_gradient[a][c];
             }
-        }
-        if let Face::Flat(n) = flatness {
-            // Sliding along it does nothing, whatever the lattices' phase: g along the face adds up to nothing.
-            w.flat = true;
-            w.s = scale(dot(&n, &w.s), &n);
-            return Some(w);
         }
         let share = (w.divergence(vi) - trace(&wall_gradient)) / D as f64;
         for k in 0..D {
@@ -156,7 +155,7 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Adds the sums of a face to those of the row; returns how flat all the row sees is.
+    /// Adds the sums of a face to those of the row.
     #[inline(always)]
     fn add_face(
         &self,
@@ -164,8 +163,8 @@ impl<const D: usize> Solver<D> {
         i: usize,
         (contacts, first): (&mut Vec<Contact<D>>, usize),
         w: &mut WallRow<D>,
-        flatness: Face<D>,
-    ) -> Face<D> {
+        flat: &mut FlatFace<D>,
+    ) {
         let n = face.across();
         for a in 0..D {
             w.s[a] += face.s[a];
@@ -185,7 +184,8 @@ impl<const D: usize> Solver<D> {
                 }
             }
         }
-        if self.wall_moves(face.group) {
+        let moves = self.wall_moves(face.group);
+        if moves {
             w.drive += trace(&face.carried);
         }
         let n = &face.normal;
@@ -195,14 +195,15 @@ impl<const D: usize> Solver<D> {
             }
             add_outer(&mut w.lean, -face.lean, n, n);
         }
-        if !face.free_slip || self.walls.groups[face.group as usize].friction == 0.0 {
-            return flatness.with(None);
+        let rubs = face.free_slip && self.walls.groups[face.group as usize].friction > 0.0;
+        flat.add(face, rubs && face.bend.is_none(), moves);
+        if !rubs {
+            return;
         }
         let to_area = -2.0 * self.volume[i] * self.width;
         let area = to_area * dot(&face.s, n);
         let drive = scale(to_area, &apply(&face.carried, n));
         Contact::gather(contacts, first, (i, face.group), n, area, &drive);
-        flatness.with(face.bend.is_none().then_some(*n))
     }
 
     /// Adds what turns with a face to the row: the rotation that a bend makes of sliding, and the wall's own.
@@ -251,7 +252,7 @@ impl<const D: usize> Solver<D> {
 }
 
 impl<const D: usize> WallRow<D> {
-    fn new(row: u32) -> Self {
+    pub(super) fn new(row: u32) -> Self {
         Self {
             row,
             s: [0.0; D],
@@ -260,7 +261,7 @@ impl<const D: usize> WallRow<D> {
             q: [[0.0; D]; D],
             c: [[0.0; D]; D],
             cv: [0.0; D],
-            flat: false,
+            smoothed: 0.0,
             barrier: 0.0,
             push: [0.0; D],
             rub: Rub::NONE,
@@ -300,11 +301,7 @@ impl<const D: usize> WallRow<D> {
     /// A belt's v_w, along its own face, opens and closes nothing.
     #[inline(always)]
     pub(super) fn divergence(&self, v: &Vector<D>) -> f64 {
-        if self.flat {
-            trace(&self.gradient(v, true))
-        } else {
-            -2.0 * (dot(v, &self.s) - self.drive)
-        }
+        -2.0 * (dot(v, &self.s) - self.drive)
     }
 
     /// Force per volume of a stress through walls: 2 K : tau, the adjoint of [`WallRow::gradient`].
