@@ -3,33 +3,24 @@
 //! Only bodies that touch (`piles.rs`) press on each other, by way of others or themselves: not through the air, and not through a shelf or a shut gate
 //! that parts all of one from the other. What is joined beside a shelf counts as above it, as in a fluid it does.
 //!
-//! "Above" is against gravity's part along one axis. Of several (`load_axes.rs`) the one that gives a place least counts: a layer on a steep
-//! slope lies on its bed, not on its lower end.
+//! "Above" is along an axis, against gravity's part along it. Of several (`ways.rs`) the one that gives a place least counts: a layer on a steep
+//! slope lies on its bed, not on its lower end. Where none comes out at a free surface (`tops.rs`), as from a bin that stands askew in the
+//! domain, it is against gravity.
 
-use super::load_axes::load_axes;
-use super::piles::{Piles, holds, periods};
+use super::piles::{Piles, holds};
 use super::roof::pressures_under_roofs;
+use super::tops::{Tops, filled};
+use super::ways::{Way, Ways, pressing_gravity};
 use super::{Body, Point, Scene};
 use crate::math::dot;
 use crate::shape::Lattice;
-use crate::state::CellGrid;
-
-/// Halvings of a spacing that find where a body ends.
-const BISECTIONS: u32 = 20;
-
-/// How near a wall point lies to half a spacing above a top where that is a roof, over the spacing [1]: a row of points half a
-/// spacing behind the roof is as near whatever its phase, a wall beside the top is not.
-const ROOF: f64 = 0.75;
 
 /// The starting loads of a scene.
 pub(super) struct Loads<'a, const D: usize> {
     scene: &'a Scene,
-    /// Axes along which weight may rest, the one that gravity mostly points along first.
-    axes: Vec<usize>,
-    piles: Piles<'a>,
-    /// Points of walls and gates at which the way up may end.
-    walls: CellGrid<D>,
-    /// Pressures of places of fluids under a roof, for each body [Pa]; see [`pressures_under_roofs`].
+    ways: Ways,
+    tops: Tops<'a, D>,
+    /// Pressures of places under a roof, for each body [Pa]; see [`pressures_under_roofs`].
     roofed: Vec<Vec<Option<f64>>>,
 }
 
@@ -42,12 +33,10 @@ impl<'a, const D: usize> Loads<'a, D> {
         lattices: &[Lattice],
         walls: &[[f64; D]],
     ) -> Self {
-        let near = ROOF * scene.numerics.spacing;
         let mut loads = Self {
             scene,
-            axes: load_axes(scene, up),
-            piles: Piles::of::<D>(scene, lattices),
-            walls: CellGrid::build(walls, near, &periods::<D>(scene)),
+            ways: Ways::of(scene, up),
+            tops: Tops::new(scene, Piles::of::<D>(scene, lattices), walls),
             roofed: Vec::new(),
         };
         loads.roofed = pressures_under_roofs(&loads, lattices);
@@ -56,14 +45,17 @@ impl<'a, const D: usize> Loads<'a, D> {
 
     /// Pressure at `x`, which belongs to one of a body's places and lies near it [Pa].
     pub(super) fn at(&self, body: usize, (number, place): (usize, &Point), x: &Point) -> f64 {
-        match self.roofed[body].get(number) {
-            Some(Some(pressure)) => {
-                let material = self.scene.bodies[body].material;
-                let rho = self.scene.materials[material].material.rest_density();
-                (pressure + self.head(rho, place, x)).max(0.0)
+        let pressure = match self.roofed[body].get(number) {
+            Some(Some(pressure)) => *pressure,
+            // A side along the way is what a place near it may be moved out of, to where nothing is above it.
+            _ if self.ways.against_gravity.is_some() && !self.tops.piles.fill(body, x) => {
+                self.above(body, place)
             }
-            _ => self.above(body, x),
-        }
+            _ => return self.above(body, x),
+        };
+        let material = self.scene.bodies[body].material;
+        let rho = self.scene.materials[material].material.rest_density();
+        (pressure + self.head(rho, place, x)).max(0.0)
     }
 
     pub(super) fn scene(&self) -> &Scene {
@@ -72,200 +64,95 @@ impl<'a, const D: usize> Loads<'a, D> {
 
     /// Whether there are walls or gates at which the way up may end.
     pub(super) fn has_walls(&self) -> bool {
-        !self.walls.is_empty()
+        self.tops.has_walls()
     }
 
     /// What a fluid of this density at rest bears more at `low` than at `high` [Pa].
     pub(super) fn head(&self, rho: f64, high: &[f64], low: &[f64]) -> f64 {
-        let axes = self.axes.iter().filter(|axis| !self.repeats(**axis));
-        axes.map(|&k| rho * self.gravity(k) * (self.direction(k) * (high[k] - low[k])))
-            .sum()
+        let gravity = pressing_gravity(self.scene);
+        let parts = gravity.iter().zip(high.iter().zip(low));
+        parts.map(|(g, (high, low))| rho * g * (low - high)).sum()
     }
 
     /// Whether a place is under a roof, whichever way is up.
     pub(super) fn under_roof(&self, body: usize, place: &Point) -> bool {
-        let mut ways = self.axes.iter().filter(|axis| !self.repeats(**axis));
-        let all = ways.clone().all(|&k| self.ends_at_wall(k, body, place));
-        all && ways.next().is_some()
+        let mut fixed = self.ways.fixed().peekable();
+        let upright = self.ways.against_gravity.as_ref();
+        fixed.peek().is_some()
+            && fixed.all(|way| self.is_closed(way, body, place))
+            && upright.is_none_or(|way| self.tops.end_at_wall(way, body, place))
     }
 
     /// Weight of what lies above a place in a body and touches that, by way of others or itself [Pa].
     pub(super) fn above(&self, body: usize, place: &Point) -> f64 {
-        let mut fixed = self.axes.iter().filter(|axis| !self.repeats(**axis));
-        match (&self.axes[..], fixed.next()) {
-            ([only], Some(_)) => self.weight(*only, body, place),
-            (axes, first) => {
-                let open = axes.iter().filter_map(|&k| self.borne(k, body, place));
-                open.reduce(f64::min)
-                    .or_else(|| first.map(|&k| self.weight(k, body, place)))
-                    .unwrap_or(0.0)
-            }
+        let ways = &self.ways;
+        let axes = ways.axes.iter();
+        if let ([only], None) = (&ways.axes[..], &ways.against_gravity)
+            && only.period.is_none()
+        {
+            return self.weight(only, body, place);
         }
+        let open = axes.filter_map(|way| self.borne(way, body, place));
+        let otherwise = || ways.against_gravity.iter().chain(ways.fixed()).next();
+        open.reduce(f64::min)
+            .or_else(|| otherwise().map(|way| self.weight(way, body, place)))
+            .unwrap_or(0.0)
     }
 
-    /// As [`Loads::above`], along an axis; `None` where nothing says what a place bears along it: its way up goes round a period and never
-    /// ends, or ends at a wall.
-    fn borne(&self, axis: usize, body: usize, place: &Point) -> Option<f64> {
-        let endless = self.repeats(axis) && self.is_round(axis, body, place);
-        if endless || self.ends_at_wall(axis, body, place) {
+    /// As [`Loads::above`], along a way; `None` where nothing says what a place bears along it: it goes round a period and never ends, or
+    /// is closed.
+    fn borne(&self, way: &Way, body: usize, place: &Point) -> Option<f64> {
+        if self.tops.is_round(way, body, place) || self.is_closed(way, body, place) {
             return None;
         }
-        if !self.repeats(axis) {
-            return Some(self.weight(axis, body, place));
+        if way.period.is_none() {
+            return Some(self.weight(way, body, place));
         }
-        let way = self.top_above(axis, body, place);
-        let weight = |other: &Body| self.gravity(axis) * self.mass(axis, other, place, way);
-        Some(self.piles.around(body).map(weight).sum())
+        let length = self.tops.length(way, body, place);
+        let weight = |other: &Body| way.gravity * self.mass(way, other, place, length);
+        Some(self.tops.piles.around(body).map(weight).sum())
     }
 
-    /// Whether a place's pile fills the whole period along an axis; touching bodies may leave half a spacing.
-    fn is_round(&self, axis: usize, body: usize, place: &Point) -> bool {
-        let (period, spacing) = (self.extent(axis), self.scene.numerics.spacing);
-        let inside = |way: f64| self.piles.fill(body, &self.along(axis, place, way));
-        filled(&inside, period, spacing) > period - 0.5 * spacing
+    /// Whether a way along an axis ends at a wall or gate, or at a side that stands along gravity.
+    fn is_closed(&self, way: &Way, body: usize, place: &Point) -> bool {
+        let upright = self.ways.against_gravity.as_ref();
+        upright.is_some_and(|up| self.tops.end_at_side(way, up, body, place))
+            || self.tops.end_at_wall(way, body, place)
     }
 
-    /// Whether what touches a place ends at a wall or gate above it.
-    fn ends_at_wall(&self, axis: usize, body: usize, place: &Point) -> bool {
-        if !self.has_walls() {
-            return false;
-        }
-        let dp = self.scene.numerics.spacing;
-        let way = self.top_above(axis, body, place) + 0.5 * dp;
-        let mut top: [f64; D] = std::array::from_fn(|k| place[k]);
-        top[axis] += self.direction(axis) * way;
-        let mut wall = false;
-        self.walls
-            .for_each_within(&top, ROOF * dp, |_, _, _| wall = true);
-        wall
-    }
-
-    /// Way from a place of a body up to where what touches that ends the first time [m].
-    fn top_above(&self, axis: usize, body: usize, place: &Point) -> f64 {
-        let inside = |way: f64| self.piles.fill(body, &self.along(axis, place, way));
-        // Bodies that touch may leave a gap of less than half a spacing.
-        let step = 0.5 * self.scene.numerics.spacing;
-        let most = self.extent(axis);
-        let mut way = 0.0;
-        while way < most && inside(way + step) {
-            way += step;
-        }
-        first_change(&inside, way, step)
-    }
-
-    /// Weight of all of a pile that lies above a place along an axis that does not repeat [Pa].
-    fn weight(&self, axis: usize, body: usize, place: &Point) -> f64 {
-        let direction = self.direction(axis);
-        let upwards = self.scene.up();
+    /// Weight of all of a pile that lies above a place along a way that leaves the domain [Pa].
+    fn weight(&self, way: &Way, body: usize, place: &Point) -> f64 {
+        let upwards = dot(&self.scene.up(), &way.direction);
         let weight = |other: &Body| {
-            let (lower, upper) = other.shape.bounds();
-            let top = if direction > 0.0 { upper } else { lower };
-            let mut height = direction * (top[axis] - place[axis]);
+            let mut height = way.height(place, &other.shape.bounds());
             if let Some(level) = other.level {
-                let room = level - dot(&upwards, place);
+                let room = level - dot(&self.scene.up(), place);
                 // Across "up" all or nothing of the way is below the level.
-                if upwards[axis] != 0.0 || room <= 0.0 {
+                if upwards > 0.0 {
+                    height = height.min(room / upwards);
+                } else if room <= 0.0 {
                     height = height.min(room);
                 }
             }
             let rho = self.scene.materials[other.material].material.rest_density();
             if height > 0.0 && height.is_finite() {
-                let inside = |way: f64| other.shape.contains(&self.along(axis, place, way));
+                let inside =
+                    |along: f64| other.shape.contains(&way.point(self.scene, place, along));
                 let spacing = self.scene.numerics.spacing;
-                rho * self.gravity(axis) * filled(&inside, height, spacing)
+                rho * way.gravity * filled(&inside, height, spacing)
             } else {
                 0.0
             }
         };
-        self.piles.around(body).map(weight).sum()
+        self.tops.piles.around(body).map(weight).sum()
     }
 
     /// Mass of a body on the way up from a place, over the area across it [kg/m^2].
-    fn mass(&self, axis: usize, body: &Body, place: &Point, way: f64) -> f64 {
+    fn mass(&self, way: &Way, body: &Body, place: &Point, length: f64) -> f64 {
         let rho = self.scene.materials[body.material].material.rest_density();
-        let inside = |way: f64| holds(self.scene, body, &self.along(axis, place, way));
-        rho * filled(&inside, way, self.scene.numerics.spacing)
+        let inside = |along: f64| holds(self.scene, body, &way.point(self.scene, place, along));
+        rho * filled(&inside, length, self.scene.numerics.spacing)
     }
-
-    /// The point so far up from a place; on an axis that repeats its image in the domain.
-    fn along(&self, axis: usize, place: &Point, way: f64) -> Point {
-        let mut x = *place;
-        x[axis] += self.direction(axis) * way;
-        if self.repeats(axis) {
-            let lower = self.scene.domain.lower[axis];
-            let beyond = (x[axis] - lower).rem_euclid(self.extent(axis));
-            // What rounds to a whole period is the next one's beginning.
-            x[axis] = lower
-                + if beyond < self.extent(axis) {
-                    beyond
-                } else {
-                    0.0
-                };
-        }
-        x
-    }
-
-    /// Gravity's size along an axis [m/s^2].
-    fn gravity(&self, axis: usize) -> f64 {
-        self.scene.domain.gravity[axis].abs()
-    }
-
-    /// 1 where up is along an axis, -1 where it is against it.
-    fn direction(&self, axis: usize) -> f64 {
-        if self.scene.domain.gravity[axis] < 0.0 {
-            1.0
-        } else {
-            -1.0
-        }
-    }
-
-    fn repeats(&self, axis: usize) -> bool {
-        self.scene.domain.periodic[axis]
-    }
-
-    /// Of the domain [m].
-    fn extent(&self, axis: usize) -> f64 {
-        self.scene.domain.upper[axis] - self.scene.domain.lower[axis]
-    }
-}
-
-/// How much of a way of length `height` lies `inside` [m].
-fn filled(inside: &impl Fn(f64) -> bool, height: f64, spacing: f64) -> f64 {
-    // Just short of the top, which belongs to no body.
-    let end = height * (1.0 - 1e-9);
-    let count = (height / spacing).ceil().max(1.0);
-    let step = end / count;
-    let mut length = 0.0;
-    let mut was = inside(0.0);
-    for n in 0..count as usize {
-        let from = n as f64 * step;
-        let is = inside(from + step);
-        length += match (was, is) {
-            (true, true) => step,
-            (false, false) => 0.0,
-            _ => {
-                let change = first_change(inside, from, step) - from;
-                if was { change } else { step - change }
-            }
-        };
-        was = is;
-    }
-    length
-}
-
-/// Where, on a way of length `step` from `from`, a body ends or begins.
-fn first_change(inside: &impl Fn(f64) -> bool, from: f64, step: f64) -> f64 {
-    let was = inside(from);
-    let (mut low, mut high) = (0.0, step);
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if inside(from + middle) == was {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    from + low
 }
 
 #[cfg(test)]

@@ -12,7 +12,6 @@ mod gates;
 mod ghosts;
 mod lift;
 mod load;
-mod load_axes;
 mod piles;
 mod quality;
 mod raw;
@@ -20,7 +19,9 @@ mod reference;
 mod roof;
 mod steady_flow;
 mod syntax;
+mod tops;
 mod types;
+mod ways;
 
 pub use adjust::Adjustable;
 pub(crate) use build::rigid_motion;

@@ -1,5 +1,6 @@
-//! Fluids under roofs at the start: a culvert, the bottom of a U, a tank that narrows upwards. What stands above a place there is not
-//! what it bears: water at rest has the head of the open water that it is joined to (docs/theory.md, "Start").
+//! What lies under roofs at the start: a culvert, the bottom of a U, a tank that narrows upwards, a bin that leans. What stands above a place
+//! there is not what it bears: water at rest has the head of the open water that it is joined to (docs/theory.md, "Start"), and of sand whose
+//! pressure is even all round, as it starts, nothing else is at rest between smooth walls.
 //!
 //! Places under a roof take the pressure that balances them with their neighbours, sum_j [p_i - p_j - rho g (z_j - z_i)] = 0 with rho the mean of
 //! both, between the open places, which have that of their depth. Between two tanks of other levels it falls evenly along the way.
@@ -13,7 +14,7 @@ use crate::state::CellGrid;
 const BALANCED: f64 = 1e-9;
 const MOST_ITERATIONS: usize = 20_000;
 
-/// A place of a fluid.
+/// A place of a body.
 struct Place<const D: usize> {
     body: usize,
     number: usize,
@@ -23,7 +24,7 @@ struct Place<const D: usize> {
     pressure: f64,
 }
 
-/// Pressures of the places of each body that lie under a roof and are joined to open fluid [Pa]; none for the others.
+/// Pressures of the places of each body that lie under a roof and are joined to what is open [Pa]; none for the others.
 pub(super) fn pressures_under_roofs<const D: usize>(
     loads: &Loads<'_, D>,
     lattices: &[Lattice],
@@ -47,37 +48,35 @@ pub(super) fn pressures_under_roofs<const D: usize>(
     found
 }
 
-/// The places of all fluids, and which of them lie under a roof; `None` where none does.
+/// The places of all bodies, and which of them lie under a roof; `None` where none does.
 fn roofed_places<const D: usize>(
     loads: &Loads<'_, D>,
     lattices: &[Lattice],
 ) -> Option<(Vec<Place<D>>, Vec<bool>)> {
-    let scene = loads.scene();
-    let is_fluid = |body: usize| {
-        let material = scene.bodies[body].material;
-        scene.materials[material].material.is_fluid()
-    };
-    if !loads.has_walls() || !(0..lattices.len()).any(is_fluid) {
+    if !loads.has_walls() {
         return None;
     }
-    let mut places = Vec::new();
-    let mut roofed = Vec::new();
-    for body in (0..lattices.len()).filter(|b| is_fluid(*b)) {
-        let density = scene.materials[scene.bodies[body].material]
-            .material
-            .rest_density();
-        for (number, point) in lattices[body].points.iter().enumerate() {
-            roofed.push(loads.under_roof(body, point));
-            places.push(Place {
-                body,
-                number,
-                x: std::array::from_fn(|k| point[k]),
-                density,
-                pressure: 0.0,
-            });
-        }
+    let roofed: Vec<bool> = (0..lattices.len())
+        .flat_map(|body| lattices[body].points.iter().map(move |p| (body, p)))
+        .map(|(body, point)| loads.under_roof(body, point))
+        .collect();
+    if !roofed.contains(&true) {
+        return None;
     }
-    roofed.contains(&true).then_some((places, roofed))
+    let scene = loads.scene();
+    let places = scene.bodies.iter().zip(lattices).enumerate();
+    let places = places.flat_map(|(body, (of, lattice))| {
+        let density = scene.materials[of.material].material.rest_density();
+        let points = lattice.points.iter().enumerate();
+        points.map(move |(number, point)| Place {
+            body,
+            number,
+            x: std::array::from_fn(|k| point[k]),
+            density,
+            pressure: 0.0,
+        })
+    });
+    Some((places.collect(), roofed))
 }
 
 /// The places that touch each one under a roof.
@@ -103,7 +102,7 @@ fn neighbours<const D: usize>(
     points.iter().enumerate().map(of).collect()
 }
 
-/// Which places under a roof open fluid reaches.
+/// Which places under a roof are joined to open ones.
 fn joined(roofed: &[bool], neighbours: &[Vec<u32>]) -> Vec<bool> {
     let mut joined = vec![false; roofed.len()];
     let open = |i: &usize| neighbours[*i].iter().any(|&j| !roofed[j as usize]);

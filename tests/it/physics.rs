@@ -4,6 +4,7 @@
 //! Tolerances are those of the issue that asked for the case; each test says where its number comes from.
 
 mod acoustic_steps;
+mod askew;
 mod axisymmetric;
 mod bends;
 mod chutes;

@@ -17,7 +17,6 @@ use crate::state::State;
 
 use super::elements::elements;
 use super::ghosts::ghost_depth;
-use super::load_axes::asks_for_walls;
 use super::{Dimension, Point, Scene};
 use inflows::source;
 use joins::{Standing, join_boxes};
@@ -102,10 +101,9 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     Ok((plan, state))
 }
 
-/// Points of walls and gates at which the way up may end at the start: roofs of fluids, and where several ways lead up.
+/// Points of walls and gates at which the way up may end at the start.
 fn roofs<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<Vector<D>> {
-    let has_fluids = scene.materials.iter().any(|m| m.material.is_fluid());
-    if !(has_fluids || asks_for_walls(scene)) || scene.numerics.scheme != Scheme::Implicit {
+    if scene.numerics.scheme != Scheme::Implicit {
         return Vec::new();
     }
     let openings: Vec<f64> = scene.gates.iter().map(|g| g.start).collect();

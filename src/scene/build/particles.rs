@@ -34,7 +34,7 @@ fn exact_mass(mass: f64, largest: f64) -> f64 {
     (mass / quantum).round() * quantum
 }
 
-/// Particles, and devices as they start; `walls` are the points of walls and gates that may be roofs of fluids.
+/// Particles, and devices as they start; `walls` are the points of walls and gates that may be roofs.
 ///
 /// # Errors
 /// A sentence: no particles and no inflow.
