@@ -93,7 +93,7 @@ fn starts_of_blocks(aside: f64, walled: bool) {
         let wall = if walled { &bin[..] } else { &bin[1..3] };
         let (mean, worst) = of_depth(&askew(degrees, &body, &[wall]), degrees);
         println!("{aside} aside, walls {walled}, {degrees} deg: {mean:.4}, worst {worst:.4}");
-        // A tenth of a spacing of depth on average, and what packing moves is weighed by less than one.
+        // One place may be off by about a spacing of depth, 2 %, where its way leaves by the edge of the top.
         assert!((mean - 1.0).abs() < 0.01, "{degrees} deg: {mean}");
         assert!(worst < 0.03, "{degrees} deg: {worst}");
     }
