@@ -187,8 +187,8 @@ impl<const D: usize> Grains<D> {
             let b = field[j];
             (0..D * D).for_each(|k| mix(&mut field[i][k / D][k % D], b[k / D][k % D]));
         }
-        for k in 0..D {
-            self.position[i][k] += share * away[k];
+        for (x, away) in self.position[i].iter_mut().zip(away) {
+            *x += share * away;
         }
         (self.mass[i], self.density[i]) = (whole, whole / volume);
         self.drained[j] = true;
