@@ -145,7 +145,8 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    fn build_lists(&mut self, state: &State<D>) {
+    /// Builds lists from the noted positions and the walls where they are.
+    pub(super) fn build_lists(&mut self, state: &State<D>) {
         self.lists.build(
             &state.grains,
             &self.walls,

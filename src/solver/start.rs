@@ -174,17 +174,14 @@ impl<const D: usize> Solver<D> {
 
     /// Derives lists, walls, pressures and viscosities of a restored state, with the bits they had.
     pub fn resume(&mut self, state: &State<D>) {
+        // What the state before had moved is no part of this one.
+        self.moved = Moved::default();
         // Lists were built with plates and movers where they were then.
         self.place_movers(state.pose.listed);
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.listed_opening, 0.0);
         }
-        self.lists.build(
-            &state.grains,
-            &self.walls,
-            &self.periodic,
-            (&self.workers, self.arch),
-        );
+        self.build_lists(state);
         self.place_movers(state.pose.now);
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.opening, gate.rate);

@@ -5,6 +5,7 @@
 mod cells;
 mod grains;
 mod random;
+mod rings;
 
 pub use cells::CellGrid;
 pub use grains::{Grains, flat, flat_tensors};
