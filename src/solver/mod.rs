@@ -185,7 +185,7 @@ pub struct Solver<const D: usize> {
     wall_share: Vec<f64>,
     /// Id and div v [1/s] at the start of the step of fluid particles without neighbours, by id; else empty.
     lone: Vec<(u64, f64)>,
-    /// The flat wall without slip that each particle of a fluid sees; empty in scenes without fluids and of rings.
+    /// The flat wall without slip that each particle of a fluid sees; empty in scenes without fluids or walls without slip.
     mirrors: Vec<mirror::Mirror<D>>,
     /// The flat walls with free slip that each particle of a fluid sees; empty in the plane and in scenes without.
     faces: Vec<reflect::Faces<D>>,
