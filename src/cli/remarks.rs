@@ -1,12 +1,10 @@
 //! What is legal in a scene and seldom meant, in words for people: `sandgate info` and `sandgate run` tell it.
 
+use crate::boundary::ROWS;
 use crate::scene::{Dimension, Scene, WallGeometry};
 
 /// Share of a body's mass that its particles may miss or add without a word [1].
 const MASS_TOLERANCE: f64 = 0.01;
-
-/// Spacings that a wall is thick, or a gate.
-const ROWS: f64 = 4.0;
 
 /// Remarks on a scene, none for most.
 pub(super) fn remarks(scene: &Scene) -> Vec<String> {
@@ -21,7 +19,7 @@ fn thin_walls(scene: &Scene) -> Vec<String> {
         Dimension::Three => 3,
         Dimension::Two | Dimension::Axisymmetric => 2,
     };
-    let least = ROWS * scene.numerics.spacing;
+    let least = ROWS as f64 * scene.numerics.spacing;
     let told = scene.walls.iter().filter_map(|wall| {
         let WallGeometry::Box { lower, upper } = &wall.geometry else {
             return None;

@@ -110,7 +110,7 @@ impl Component {
 
     fn fail(&mut self, why: String) -> Error {
         self.life.mode = Mode::Failed;
-        self.step_failed = true;
+        self.life.step_failed = true;
         Error::Solver(why)
     }
 

@@ -12,6 +12,8 @@ use crate::scene::Scene;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Life {
     pub(super) mode: Mode,
+    /// See [`Component::step_failed`].
+    pub(super) step_failed: bool,
     /// Simulated time [s].
     pub(super) time: f64,
     /// No step may end later [s]: the orchestrator's, no part of what is saved.
@@ -49,6 +51,7 @@ impl Life {
             outputs::sample(table, engine.as_ref(), &before, 0.0).map_err(Error::Setup)?;
         let life = Self {
             mode: Mode::Instantiated,
+            step_failed: false,
             time: 0.0,
             stop: None,
             communication_steps: 0,
@@ -83,17 +86,17 @@ impl Component {
         self.take_over(life, engine)
     }
 
-    /// Keeps the state as it is in memory, in place of what was kept before. That copies the particles and makes no bytes:
-    /// it costs little beside a step, so that each step may be preceded by it. A step that fails leaves a state that none
-    /// goes on from; this is the way back.
+    /// Keeps the state as it is in memory, in place of what was kept before. That copies the particles, but for a scene that
+    /// slept since, and makes no bytes: it costs little beside a step, so that each step may be preceded by it. A step that
+    /// fails leaves a state that none goes on from; this is the way back.
     pub fn keep(&mut self) {
         self.kept = Some(self.life.clone());
         self.engine.keep();
     }
 
     /// Goes back to the state that [`Component::keep`] kept last, which is kept no more; the stop time stays. Allowed in
-    /// every mode. False, and nothing happens, where none has been kept since the component was made, reset, or built for
-    /// other parameters.
+    /// every mode. False, and nothing happens, where none has been kept since the component was made, reset, restored, or
+    /// built for other parameters.
     pub fn back_to_kept(&mut self) -> bool {
         let Some(life) = self.kept.take() else {
             return false;
@@ -103,7 +106,6 @@ impl Component {
         }
         let stop = self.life.stop;
         self.life = Life { stop, ..life };
-        self.step_failed = false;
         true
     }
 

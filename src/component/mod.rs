@@ -86,8 +86,6 @@ pub struct Component {
     notes: Vec<String>,
     /// For the host: no part of the state.
     host: HostSettings,
-    /// See [`Component::step_failed`]: no part of the state.
-    step_failed: bool,
     life: Life,
     /// What [`Component::back_to_kept`] goes back to, beside the engine's part: no part of the state.
     kept: Option<Life>,
@@ -114,7 +112,6 @@ impl Component {
             own_threads: threads,
             notes: Vec::new(),
             host: HostSettings::of(scene),
-            step_failed: false,
             life,
             kept: None,
         })
@@ -144,11 +141,11 @@ impl Component {
         self.life.mode
     }
 
-    /// Whether a step has failed since the last reset or restored state: then no calls that were accepted lead to the
-    /// state that it is in, also when it has been terminated.
+    /// Whether a step has failed on the way to the state that it is in: then no calls that were accepted lead there, also when
+    /// it has been terminated since, or saved and restored.
     #[must_use]
     pub fn step_failed(&self) -> bool {
-        self.step_failed
+        self.life.step_failed
     }
 
     /// Simulated time [s]: that of the last good step.
@@ -180,7 +177,7 @@ impl Component {
         self.built = self.life.parameters.clone();
         self.host = HostSettings::of(&self.base);
         self.notes.clear();
-        self.step_failed = false;
+        self.kept = None;
         Ok(())
     }
 
@@ -197,7 +194,7 @@ impl Component {
     /// The account of material; after a failed step that of the last good one, as outputs are.
     #[must_use]
     pub fn ledger(&self) -> MassLedger {
-        if self.step_failed || self.life.mode == Mode::Failed {
+        if self.life.step_failed {
             return outputs::ledger(&self.table, &self.life.outputs);
         }
         self.engine.ledger()

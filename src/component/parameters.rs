@@ -68,7 +68,7 @@ impl Component {
             ..life
         };
         self.notes.clear();
-        self.step_failed = false;
+        self.kept = None;
         Ok(())
     }
 }

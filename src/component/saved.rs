@@ -23,6 +23,15 @@ impl<const D: usize> Saved<D> {
         }
     }
 
+    /// The same as [`Saved::of`] for a state whose particles are those of `self`, which are not copied.
+    pub(super) fn slept_on(self, now: &mut State<D>, sampler: &Sampler<D>) -> Self {
+        let theirs = std::mem::take(&mut now.grains);
+        let mut saved = Self::of(now, sampler);
+        now.grains = theirs;
+        saved.state.grains = self.state.grains;
+        saved
+    }
+
     /// The same as bytes.
     ///
     /// # Errors

@@ -164,6 +164,9 @@ impl<const D: usize> Simulation<D> {
         self.sampler.set_crossed(&saved.crossed);
         self.state = saved.state;
         self.still = OnceLock::new();
+        // What was kept may be of another course of events.
+        self.kept = None;
+        self.slept_at = None;
         self.solver.resume(&self.state);
         self.refresh_devices();
     }
@@ -255,8 +258,14 @@ impl<const D: usize> Engine for Simulation<D> {
 
     fn keep(&mut self) {
         // What was kept goes first: there are never three copies.
-        self.kept = None;
-        self.kept = Some(Saved::of(&self.state, &self.sampler));
+        let kept = self.kept.take();
+        let slept = self.state.rest.asleep && self.slept_at == Some(self.state.steps);
+        let same = kept.filter(|kept| slept && kept.state.steps == self.state.steps);
+        self.kept = Some(match same {
+            // Sleep moves no particle, and they are nearly all that there is to copy.
+            Some(kept) => kept.slept_on(&mut self.state, &self.sampler),
+            None => Saved::of(&self.state, &self.sampler),
+        });
     }
 
     fn back_to_kept(&mut self) -> bool {

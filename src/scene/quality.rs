@@ -1,8 +1,10 @@
 //! What `numerics.quality` stands for: a resolution, which is what the work-precision studies found worth its time
 //! (docs/precision.md, "What the quality knob picks").
 
-use super::lift::{CIRCLES, ROWS};
+use super::lift::CIRCLES;
 use super::raw::{QualityWord, RawScene};
+use crate::boundary::ROWS;
+use crate::solver::SHORTEST_PERIOD;
 
 /// A choice of resolution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,13 +121,15 @@ fn periods(raw: &RawScene) -> Vec<f64> {
 }
 
 /// Coarsest spacing at which plates of gates that have a thickness are four spacings deep, the radii of circles as much, and periods
-/// 4.6 smoothing lengths long, as `lift` wants them [m].
+/// as long as neighbour lists need them, as `lift` wants them [m].
 fn coarsest(raw: &RawScene, ratio: f64) -> f64 {
     let gates = raw.gates.iter().flat_map(|g| &g.value.0);
     let thickness = gates.filter_map(|g| Some(g.value.as_ref()?.thickness.as_ref()?.value.0));
-    let plates = thickness.map(|length| length / ROWS);
+    let plates = thickness.map(|length| length / ROWS as f64);
     let circles = radii(raw).map(|radius| radius / CIRCLES.0);
-    let periods = periods(raw).into_iter().map(|p| p / (4.6 * ratio));
+    let periods = periods(raw)
+        .into_iter()
+        .map(|p| p / (SHORTEST_PERIOD * ratio));
     let all = plates.chain(circles).chain(periods);
     all.fold(f64::INFINITY, f64::min)
 }

@@ -136,9 +136,11 @@ impl<const D: usize> Solver<D> {
     /// Places of what a plate does not just push aside: all but fluids that flow.
     fn stiff<'a>(&'a self, state: &'a State<D>) -> impl Iterator<Item = &'a Vector<D>> {
         let grains = &state.grains;
-        let places = grains.position.iter().zip(&grains.phase);
-        let stands = |phase: u8| !self.materials[phase as usize].flows();
-        places.filter_map(move |(x, phase)| stands(*phase).then_some(x))
+        let stands =
+            |i: usize| !grains.drained[i] && !self.materials[usize::from(grains.phase[i])].flows();
+        (0..grains.len())
+            .filter(move |i| stands(*i))
+            .map(|i| &grains.position[i])
     }
 
     /// Counts and marks what has entered a sink; removal waits for the next lists.
@@ -173,7 +175,8 @@ impl<const D: usize> Solver<D> {
                 continue;
             }
             let room = 0.6 * self.numerics.spacing;
-            let taken = state.grains.position.iter().any(|x| {
+            let rows = state.grains.position.iter().zip(&state.grains.drained);
+            let taken = rows.filter(|(_, gone)| !**gone).any(|(x, _)| {
                 source
                     .slots
                     .iter()

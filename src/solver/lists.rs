@@ -11,6 +11,13 @@ use crate::state::Grains;
 use super::grid::{Grid, Near, Periodic};
 use super::pair::{Block, WallRow};
 
+/// Skin of the neighbour lists over h [1].
+pub(super) const SKIN: f64 = 0.3;
+
+/// Shortest period over h [1]: the kernel's support of 2 h and the skin on both sides of a particle, so that none meets another
+/// and its image.
+pub const SHORTEST_PERIOD: f64 = 2.0 * (2.0 + SKIN);
+
 /// Neighbour lists of one state.
 #[derive(Debug)]
 pub(super) struct Lists<const D: usize> {

@@ -79,6 +79,7 @@ mod wall_yield;
 pub use devices::{Sink, Source};
 pub use error::SolverError;
 pub use grid::Periodic;
+pub use lists::SHORTEST_PERIOD;
 pub use numerics::{Numerics, Rotation, Scheme, YieldForm};
 pub use outputs::three;
 pub use paper_a::{PaperA, Sweeps};

@@ -113,7 +113,10 @@ impl<const D: usize> Solver<D> {
             .movers
             .iter()
             .fold(travel, |t, m| t.max(m.travel(moved)));
+        // What comes to rest must not lean on what an outflow took.
+        let lean = state.rest.quiet_steps > 0 && state.grains.drained.contains(&true);
         if renew
+            || lean
             || self.lists.outdated(
                 &state.grains,
                 &self.periodic,

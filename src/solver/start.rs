@@ -10,14 +10,11 @@ use crate::state::State;
 use super::acoustic::Acoustic;
 use super::barrier::Barrier;
 use super::implicit::Viscous;
-use super::lists::Lists;
+use super::lists::{Lists, SKIN};
 use super::packing::Packing;
 use super::ring_sections::Moved;
 use super::wall_friction::Friction;
 use super::{Plan, Scheme, Solver, explicit, paper_a, paper_b, pore, rest, texture, turning};
-
-/// Skin of the neighbour lists over h [1].
-const SKIN: f64 = 0.3;
 
 impl<const D: usize> Solver<D> {
     /// A solver for a plan, on `threads` threads (0: all cores).
@@ -150,6 +147,8 @@ impl<const D: usize> Solver<D> {
     /// Sorts a fresh state's particles and derives everything else from it.
     pub fn start(&mut self, state: &mut State<D>) {
         self.renew_lists(state);
+        // What lies as it was made has not moved.
+        self.moved = Moved::default();
         self.pack(state);
         self.set_turning(state);
         if self.has_pores && self.numerics.scheme == Scheme::Implicit {

@@ -61,7 +61,7 @@ pub struct Grains<const D: usize> {
     pub id: Vec<u64>,
     /// Phase: index of the material.
     pub phase: Vec<u8>,
-    /// Taken by an outflow and counted; removed when lists are rebuilt.
+    /// Taken by an outflow and counted, or joined to another ring; removed when lists are rebuilt.
     pub drained: Vec<bool>,
 }
 

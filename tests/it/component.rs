@@ -144,6 +144,16 @@ fn failed_step_leaves_time_and_outputs_at_the_last_good_step() {
         Mode::Failed,
         "a failed component saves as failed"
     );
+    // Terminated and restored, what it tells is of the last good step still.
+    let account = falling.ledger();
+    falling.terminate().unwrap();
+    let ended = falling.save().unwrap();
+    falling.reset().unwrap();
+    falling.restore(&ended).unwrap();
+    assert_eq!(
+        (falling.mode(), falling.step_failed(), falling.ledger()),
+        (Mode::Terminated, true, account)
+    );
     falling.reset().unwrap();
     assert_eq!((falling.mode(), falling.time()), (Mode::Instantiated, 0.0));
     falling.initialize(0.0, None).unwrap();

@@ -144,6 +144,31 @@ fn two_hundred_random_roll_backs_go_on_with_the_same_bits() {
     }
 }
 
+/// Of a scene that slept through a step less is copied.
+#[test]
+fn what_is_kept_before_each_step_is_the_state_asleep_or_awake() {
+    let mut walker = component();
+    walker.initialize(0.0, None).unwrap();
+    let mut slept = 0;
+    for k in 0..STEPS {
+        let before = walker.save().unwrap();
+        walker.keep();
+        step(&mut walker, k);
+        if k % 3 == 1 {
+            assert!(walker.back_to_kept());
+            assert!(walker.save().unwrap() == before, "before step {k}");
+            walker.keep();
+            step(&mut walker, k);
+        }
+        slept += usize::from(walker.particles().asleep[0] == 1);
+    }
+    assert!(slept > 3, "{slept} steps asleep");
+    // What was kept before another state was restored is no way back.
+    let other = component().save().unwrap();
+    walker.restore(&other).unwrap();
+    assert!(!walker.back_to_kept());
+}
+
 /// A state whose header and checksum are right, whatever its payload.
 fn sealed(good: &[u8], payload: &[u8]) -> Vec<u8> {
     let mut bytes = good[..44].to_vec();

@@ -2,8 +2,9 @@
 
 use super::super::lift;
 use super::super::raw::{
-    Angle, At, Density, Length, Place, Pressure, Ratio, RawConstantFriction, RawFluid, RawMaterial,
-    Viscosity,
+    Angle, At, CONSISTENCIES, DENSITIES, Density, FLOW_INDICES, FRICTION_ANGLES, GRAIN_DIAMETERS,
+    GRANULAR_ANGLES, Length, Place, Pressure, Ratio, RawConstantFriction, RawFluid, RawMaterial,
+    STRENGTHS, Viscosity,
 };
 use super::{Adjustable, MILLIMETRES, Target, around, at};
 
@@ -26,14 +27,10 @@ pub(super) enum MaterialKey {
 
 /// 180/pi: degrees of a radian.
 const DEGREES: Option<(&str, f64)> = Some(("deg", 57.295_779_513_082_32));
-/// Friction angles [rad]: the scene's own limits, and not so small that nothing but a fluid is left.
-const ANGLES: (f64, f64) = (0.01, 1.25);
-/// Strengths and consistencies [Pa], [Pa s^n]: no bound but that of a number.
-const STRENGTHS: (f64, f64) = (0.0, 1e9);
-/// Densities [kg/m^3]: gases are too light for the scheme, nothing is heavier than metals.
-const DENSITIES: (f64, f64) = (1.0, 3e4);
-/// Flow indices: the scene's own limits.
-const FLOW_INDICES: (f64, f64) = (0.1, 3.0);
+/// Smallest friction angle of mu(I) [rad]: not so small that nothing but a fluid is left.
+const LEAST_ANGLE: f64 = 0.01;
+/// Smallest grain diameter [m]; the scene's own limit is above 0.
+const LEAST_DIAMETER: f64 = 1e-6;
 
 /// Collects the values of one material.
 struct Rows<'a> {
@@ -83,7 +80,7 @@ impl Rows<'_> {
             "cohesion, no tensile strength,",
             MaterialKey::Cohesion,
             start,
-            STRENGTHS,
+            STRENGTHS.ends(),
         );
     }
 
@@ -93,7 +90,7 @@ impl Rows<'_> {
             "density at rest",
             MaterialKey::Density,
             start,
-            DENSITIES,
+            DENSITIES.ends(),
         );
     }
 
@@ -106,13 +103,13 @@ impl Rows<'_> {
             ),
             None => ("viscosity", MaterialKey::ConsistencyOfNewton),
         };
-        self.add("consistency", text, key, consistency, STRENGTHS);
+        self.add("consistency", text, key, consistency, CONSISTENCIES.ends());
         self.add(
             "flow_index",
             "flow index n",
             MaterialKey::FlowIndex,
             index,
-            FLOW_INDICES,
+            FLOW_INDICES.ends(),
         );
     }
 
@@ -137,7 +134,7 @@ impl Rows<'_> {
             "yield stress",
             MaterialKey::YieldStress,
             start,
-            STRENGTHS,
+            STRENGTHS.ends(),
         );
     }
 
@@ -148,7 +145,7 @@ impl Rows<'_> {
             "friction angle",
             MaterialKey::Angle,
             start,
-            (0.0, 1.25),
+            FRICTION_ANGLES.ends(),
         );
         self.density(raw.density.as_ref().map(|v| v.value.0));
         self.cohesion(raw.cohesion.as_ref());
@@ -196,14 +193,14 @@ pub(super) fn list(i: usize, name: &str, material: &RawMaterial, list: &mut Vec<
         "friction angle at vanishing shear rate, tan of it is mu_s,",
         MaterialKey::StaticAngle,
         angle(statically, preset.map(|(law, _)| law.mu_s)),
-        ANGLES,
+        (LEAST_ANGLE, GRANULAR_ANGLES.ends().1),
     );
     rows.add(
         "dynamic_friction_angle",
         "friction angle at large shear rate, tan of it is mu_2, not below the static one,",
         MaterialKey::DynamicAngle,
         angle(dynamically, preset.map(|(law, _)| law.mu_2)),
-        ANGLES,
+        (LEAST_ANGLE, GRANULAR_ANGLES.ends().1),
     );
     let scale = scale.as_ref().map(|s| s.value.0);
     rows.add(
@@ -219,7 +216,7 @@ pub(super) fn list(i: usize, name: &str, material: &RawMaterial, list: &mut Vec<
         "grain diameter",
         MaterialKey::Diameter,
         diameter.or(preset.map(|(_, grains)| grains.diameter)),
-        (1e-6, 1.0),
+        (LEAST_DIAMETER, GRAIN_DIAMETERS.ends().1),
     );
     rows.cohesion(cohesion.as_ref());
 }

@@ -39,10 +39,9 @@ pub fn narrow<const D: usize>(point: &Point) -> Vector<D> {
 /// Solver plan and start state of a scene whose dimension is D.
 ///
 /// # Errors
-/// A sentence: no particles and no inflow, more of them or of walls than there is memory for, a particle inside a wall, a periodic
-/// side too short for the kernel.
+/// A sentence: no particles and no inflow, more of them or of walls than there is memory for, a particle inside a wall.
 pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), String> {
-    let periodic = periodic::<D>(scene)?;
+    let periodic = periodic::<D>(scene);
     check_memory::<D>(scene)?;
     let mut walls = match scene.numerics.scheme {
         Scheme::PaperB(_) => elements::<D>(scene),
@@ -129,23 +128,12 @@ pub fn geometry(scene: &Scene) -> Geometry {
     }
 }
 
-fn periodic<const D: usize>(scene: &Scene) -> Result<Periodic<D>, String> {
+fn periodic<const D: usize>(scene: &Scene) -> Periodic<D> {
     let domain = &scene.domain;
-    // Support 2 h and the lists' skin of 0.3 h, on both sides of a particle.
-    let least = 2.0 * (2.0 + 0.3) * scene.numerics.spacing * scene.numerics.smoothing_ratio;
-    let mut length = [0.0; D];
-    for (k, length) in length.iter_mut().enumerate() {
-        if domain.periodic[k] {
-            *length = domain.upper[k] - domain.lower[k];
-            if *length < least {
-                return Err(format!(
-                    "the periodic side along axis {k} is {length} m long; allowed at least {least} m (4.6 h): lengthen the domain or refine the spacing"
-                ));
-            }
-        }
-    }
-    Ok(Periodic {
+    let length = |k: usize| domain.upper[k] - domain.lower[k];
+    let sides = |k: usize| if domain.periodic[k] { length(k) } else { 0.0 };
+    Periodic {
         lower: narrow(&domain.lower),
-        length,
-    })
+        length: std::array::from_fn(sides),
+    }
 }

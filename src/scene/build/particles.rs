@@ -19,18 +19,23 @@ pub(super) fn particle_mass(scene: &Scene, place: &Point, density: f64, cell: f6
     let geometry = geometry(scene);
     let length = |x: &Point| geometry.length_across(x, 0.0);
     let mass = density * cell * length(place);
-    let largest = if geometry.is_axisymmetric() {
-        density * cell * length(&scene.domain.upper)
+    let outermost = if geometry.is_axisymmetric() {
+        cell * length(&scene.domain.upper)
     } else {
-        mass
+        cell * length(place)
     };
-    exact_mass(mass, largest)
+    let materials = scene.materials.iter();
+    let densest = materials
+        .map(|m| m.material.rest_density())
+        .fold(density, f64::max);
+    exact_mass(mass, density * outermost, densest * outermost)
 }
 
-/// Mass of a particle, rounded to a multiple of a power of two so that sums of up to 2^28 particles no heavier than
-/// `largest` are exact [kg].
-fn exact_mass(mass: f64, largest: f64) -> f64 {
-    let quantum = 2f64.powi(largest.log2().floor() as i32 - 24);
+/// Mass of a particle, rounded to a multiple of a power of two so that sums are exact: of up to 2^28 particles no heavier
+/// than `largest`, the heaviest of its own density, and of up to 2^26 no heavier than `heaviest` of all [kg].
+fn exact_mass(mass: f64, largest: f64, heaviest: f64) -> f64 {
+    let magnitude = |m: f64| m.log2().floor() as i32;
+    let quantum = 2f64.powi((magnitude(largest) - 24).max(magnitude(heaviest) - 26));
     (mass / quantum).round() * quantum
 }
 
@@ -183,4 +188,29 @@ fn up_axis(scene: &Scene) -> usize {
             best
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two million particles of each of two materials, one as light as a scene may have it beside the other: the sum is
+    /// that of whole numbers, whichever comes first.
+    #[test]
+    fn masses_of_the_lightest_beside_the_heaviest_add_up_exactly() {
+        let heaviest = 1.999 * 2.65;
+        let lightest = heaviest / 4096.0;
+        let light = exact_mass(lightest, lightest, heaviest);
+        let heavy = exact_mass(heaviest, heaviest, heaviest);
+        assert!((light / lightest - 1.0).abs() < 2f64.powi(-14));
+        let many = 1 << 21;
+        let sum = |masses: [f64; 2]| {
+            let all = (0..2 * many).map(|i| masses[i % 2]);
+            all.fold(0.0, |sum, mass| sum + mass)
+        };
+        let of_each = many as f64 * light + many as f64 * heavy;
+        assert_eq!(sum([light, heavy]), of_each);
+        let taken = (0..many).fold(of_each, |rest, _| rest - heavy);
+        assert_eq!(taken, many as f64 * light);
+    }
 }

@@ -4,6 +4,7 @@ use super::Lift;
 use crate::math::length;
 use crate::scene::raw::{Axis, Gravity, RawDomain};
 use crate::scene::types::{Dimension, Domain, Point};
+use crate::solver::SHORTEST_PERIOD;
 
 impl Lift<'_> {
     pub(super) fn domain(&mut self) -> Option<Domain> {
@@ -165,13 +166,12 @@ impl Lift<'_> {
             return;
         };
         let name = Self::axis_name(axis);
-        // Support and list skin on both sides of a particle.
-        let least = 4.6 * ratio.value.0 * spacing;
+        let least = SHORTEST_PERIOD * ratio.value.0 * spacing;
         if period < least {
             self.problems.report(
                 &at.place,
                 format!("a period of {period} m along {name}"),
-                format!("at least {least} m, 4.6 smoothing lengths"),
+                format!("at least {least} m, {SHORTEST_PERIOD} smoothing lengths"),
                 "lengthen the domain along this axis, or refine numerics.spacing",
             );
         }

@@ -6,6 +6,7 @@
 mod bodies;
 mod circle;
 mod clearance;
+mod densities;
 mod devices;
 mod domain;
 mod faces;
@@ -39,7 +40,6 @@ pub(super) use friction::values as preset_values;
 use geometry::Region;
 pub(super) use material::fluid_preset;
 pub(crate) use numerics::MOST_PARTICLES;
-pub(super) use walls::ROWS;
 
 /// The scene, or `None` if a problem was reported.
 pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Option<Scene> {
@@ -60,6 +60,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
         // What refers to a material may be among what was refused.
         Vec::new()
     };
+    lift.check_densities(&materials);
     let numerics = lift.numerics(&materials);
     let quality = raw.numerics.as_ref().and_then(|n| n.value.quality.as_ref());
     let quality = quality.map(|word| Quality::of_word(word.value));

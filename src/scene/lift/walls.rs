@@ -3,13 +3,11 @@
 use super::Lift;
 use super::faces::{example_of_span, plate_places};
 use super::geometry::{Region, crossing_edges};
+use crate::boundary::ROWS;
 use crate::math::{cross, length, normalized, sub};
 use crate::scene::raw::{At, Entry, Place, Ratio, RawGate, RawWall, SlipWord};
 use crate::scene::types::{Dimension, Gate, Point, Slip, Wall, WallGeometry};
 use crate::units::shown_bound;
-
-/// Rows of wall particles: a gate is at least this many spacings deep.
-pub(in crate::scene) const ROWS: f64 = 4.0;
 
 /// A wall, as far as bodies must keep clear of it.
 pub(super) enum Solid {
@@ -241,7 +239,7 @@ impl Lift<'_> {
             from,
             to,
             span,
-            thickness: thickness.unwrap_or(ROWS * spacing),
+            thickness: thickness.unwrap_or(ROWS as f64 * spacing),
             max_speed: raw.max_speed.as_ref()?.value.0,
             start: raw.start.as_ref()?.value.0,
             slip: slip?,
@@ -258,7 +256,7 @@ impl Lift<'_> {
     /// At least four spacings, so that no particle sees through the plate, and no more than the domain can hold.
     fn thickness(&mut self, raw: &RawGate) -> Option<f64> {
         let at: &At<_> = raw.thickness.as_ref()?;
-        let least = ROWS * self.spacing?;
+        let least = ROWS as f64 * self.spacing?;
         if at.value.0 < least * (1.0 - 1e-9) {
             self.problems.report(
                 &at.place,

@@ -4,13 +4,19 @@ use super::*;
 
 // Far beyond anything real, and far from where sums overflow, which a step would report as a failure of its own.
 /// Grain diameters: up to that of a mountain.
-const GRAIN_DIAMETERS: Range = Range::above_to(0.0, 1e3);
+pub(in crate::scene) const GRAIN_DIAMETERS: Range = Range::above_to(0.0, 1e3);
 /// Densities: from well below gases to well above metals.
-const DENSITIES: Range = Range::within(1e-6, 1e6);
+pub(in crate::scene) const DENSITIES: Range = Range::within(1e-6, 1e6);
 /// Cohesions and yield stresses: up to a thousand times those of rock and steel.
-const STRENGTHS: Range = Range::within(0.0, 1e12);
+pub(in crate::scene) const STRENGTHS: Range = Range::within(0.0, 1e12);
 /// Consistencies: up to more than that of the Earth's mantle.
-const CONSISTENCIES: Range = Range::within(0.0, 1e24);
+pub(in crate::scene) const CONSISTENCIES: Range = Range::within(0.0, 1e24);
+/// Flow indices: those of all fluids that have been measured.
+pub(in crate::scene) const FLOW_INDICES: Range = Range::within(0.1, 3.0);
+/// Friction angles of constant friction: up to slopes of 3 to 1.
+pub(in crate::scene) const FRICTION_ANGLES: Range = Range::within(0.0, 1.25);
+/// Friction angles of mu(I), which is no fluid.
+pub(in crate::scene) const GRANULAR_ANGLES: Range = Range::above_to(0.0, 1.25);
 
 tagged! {
     /// A material: a law and its parameters.
@@ -31,9 +37,9 @@ macro_rules! inertial_law {
                 /// Values to start from.
                 optional preset: Preset;
                 /// Friction angle at vanishing shear rate; tan of it is mu_s.
-                optional static_friction_angle: Angle, in Range::above_to(0.0, 1.25);
+                optional static_friction_angle: Angle, in GRANULAR_ANGLES;
                 /// Friction angle at large shear rate, not below the static one; tan of it is mu_2.
-                optional dynamic_friction_angle: Angle, in Range::above_to(0.0, 1.25);
+                optional dynamic_friction_angle: Angle, in GRANULAR_ANGLES;
                 /// Inertial number I0 at which friction is half way between the two.
                 optional inertial_number_scale: Ratio, in Range::above(0.0);
                 $($own)*
@@ -85,7 +91,7 @@ table! {
     /// Constant friction (Mohr-Coulomb, Drucker-Prager) at constant volume: no rate dependence, no dilatancy.
     RawConstantFriction {
         /// Mohr-Coulomb friction angle.
-        required friction_angle: Angle, in Range::within(0.0, 1.25);
+        required friction_angle: Angle, in FRICTION_ANGLES;
         /// How the angle becomes a friction coefficient.
         optional r#match: AngleMatchWord, default "plane_strain";
         /// Density of the material at rest, pores and what fills them included.
@@ -93,7 +99,7 @@ table! {
         /// Viscous stress beside friction, consistency x (shear rate)^flow_index; 0 is none.
         optional consistency: Viscosity, in CONSISTENCIES, default 0;
         /// Flow index: 1 makes the consistency a viscosity; below 1 shear-thinning, above 1 shear-thickening.
-        optional flow_index: Ratio, in Range::within(0.1, 3.0), default 1;
+        optional flow_index: Ratio, in FLOW_INDICES, default 1;
         /// Mohr-Coulomb cohesion c. It is no tensile strength: material that is pulled parts.
         optional cohesion: Pressure, in STRENGTHS, default 0;
         /// Bulk friction coefficient mu_b: resists changes of volume. 0 is none; equations are well-posed above 1 - 7 mu/6.
@@ -141,7 +147,7 @@ table! {
         /// Consistency K: the viscosity where flow_index is 1; in Pa s^n otherwise.
         optional consistency: Viscosity, in CONSISTENCIES;
         /// Flow index n (1 if left out): 1 Newton and Bingham, below 1 shear-thinning, above 1 shear-thickening.
-        optional flow_index: Ratio, in Range::within(0.1, 3.0);
+        optional flow_index: Ratio, in FLOW_INDICES;
         /// Yield stress (0 if left out): below it nothing shears, and with it the fluid hangs together: it bears tension of up to (1 + pi) times its shear stress.
         optional yield_stress: Pressure, in STRENGTHS;
         /// Artificial viscosity alpha, what the viscosity of Newton's fluids is made up to where they are compressed or hardly move: damps what water leaves undamped, adds little to what is sheared alone, and nothing to a fluid whose viscosity is at least alpha density h c/(2 (D + 2)). Fluids that yield or thin have none.

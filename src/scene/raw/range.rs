@@ -14,7 +14,7 @@ fn short(number: f64) -> String {
 
 /// An interval; each end may be open, closed or absent (infinite).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Range {
+pub(in crate::scene) struct Range {
     lower: f64,
     upper: f64,
     lower_open: bool,
@@ -55,6 +55,11 @@ impl Range {
             upper,
             lower_open: true,
         }
+    }
+
+    /// Its two ends; an open one is no part of it.
+    pub(in crate::scene) fn ends(self) -> (f64, f64) {
+        (self.lower, self.upper)
     }
 
     /// Whether a number lies inside.

@@ -110,6 +110,42 @@ fn a_sleeping_silo_weighs_its_weight() {
     assert!(sum("x").abs() < 1e-12 * weight);
 }
 
+/// The last particle creeps into an outflow and stops, within the skin of the neighbour lists: it is gone, and nothing that sleeps
+/// leans on it.
+#[test]
+fn what_an_outflow_took_weighs_nothing_on_a_heap_that_sleeps() {
+    let scene = |from: f64| {
+        let gauge = format!(
+            "[outflows.end]\nlower = [{from}, 0]\nupper = [0.39, 0.1]\n\n[gauges.weight]\nkind = \"force\"\non = \"wall.floor\"\n\n\
+             [gauges.depth_centre]"
+        );
+        let edits = [
+            ("spacing = \"3.02 mm\"", "spacing = \"6 mm\""),
+            ("[gauges.depth_centre]", gauge.as_str()),
+        ];
+        let mut unit = Unit::new(&case("column_collapse", &edits));
+        unit.run_to(6.0);
+        assert!(unit.component.particles().asleep.iter().all(|a| *a == 1));
+        unit
+    };
+    let whole = scene(0.38);
+    assert_eq!(whole.component.ledger().outflow, 0.0);
+    let particles = whole.component.particles();
+    let toe = particles.position.iter().map(|x| x[0]);
+    let toe = toe.fold(f64::NEG_INFINITY, |most, x| most.max(f64::from(x)));
+
+    let cut = scene(toe - 2e-4);
+    let account = cut.component.ledger();
+    println!("{account:?}");
+    assert!(account.outflow > 0.0);
+    let weight = 9.81 * account.present;
+    let carried = -cut.get("gauge.weight.force_y");
+    assert!(
+        (carried / weight - 1.0).abs() < 1e-12,
+        "{carried} and {weight} N"
+    );
+}
+
 /// A closed silo sleeps; its gate wakes it, and it then discharges as one that was never asleep. Forces stay while it
 /// sleeps, and a saved sleeper sleeps on.
 #[test]
