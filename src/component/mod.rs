@@ -106,7 +106,7 @@ impl Component {
             scene: scene.clone(),
             built,
             table,
-            fingerprint: scene.fingerprint(),
+            fingerprint: scene.identity(),
             engine,
             threads,
             own_threads: threads,

@@ -1,7 +1,7 @@
 //! Saved states as bytes: header, scene fingerprint, length, checksum, payload. The only module that uses bincode.
 //!
-//! Layout, little-endian: mark (8 bytes), format version (u32), scene fingerprint (32, SHA-256 of the scene's
-//! text), payload length (u64), checksum (32, SHA-256 of all other bytes), payload. The payload is fixed-width
+//! Layout, little-endian: mark (8 bytes), format version (u32), fingerprint of the scene (32,
+//! `Scene::identity`), payload length (u64), checksum (32, SHA-256 of all other bytes), payload. The payload is fixed-width
 //! bincode of state only; gauges' definitions and scenes never travel in it. What is in it, `Component` decides.
 
 use super::Error;
@@ -184,7 +184,7 @@ pub(super) fn open<'a>(fingerprint: &[u8; 32], bytes: &'a [u8]) -> Result<&'a [u
     if &prefix[12..44] != fingerprint {
         return refuse(format!(
             "saved from another scene: found fingerprint {}, allowed {} (this scene's); give a state that was saved from this scene, or build \
-             the component from the scene that it was saved from",
+             the component from the scene that it was saved from; only comments, blanks, title, [run], [[schedule]] and [log] may differ",
             &hex(&prefix[12..44])[..12],
             &hex(fingerprint)[..12]
         ));

@@ -10,6 +10,7 @@ mod elements;
 mod error;
 mod gates;
 mod ghosts;
+mod identity;
 mod lift;
 mod load;
 mod piles;
@@ -136,7 +137,7 @@ fn parse_changed(
 }
 
 impl Scene {
-    /// SHA-256 of the scene's source text: saved states and FMUs carry it, so that they meet only their own scene.
+    /// SHA-256 of the scene's source text, byte for byte: logs and summaries tell it. Saved states go by [`Scene::identity`].
     #[must_use]
     pub fn fingerprint(&self) -> [u8; 32] {
         Sha256::digest(self.source.as_bytes()).into()
