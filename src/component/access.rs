@@ -7,7 +7,7 @@ use super::{Component, Error, ValueReference, VariableTable};
 use crate::units::{shown, shown_bound};
 
 /// Share of its range by which an input may be out of it: what rounding does to a controller's limit.
-const RANGE_SLACK: f64 = 1e-9;
+pub(super) const RANGE_SLACK: f64 = 1e-9;
 
 impl Component {
     /// Sets variables, all or none. `values` holds the flat values of all references, one after the other.
@@ -25,8 +25,12 @@ impl Component {
         let mut accepted = Vec::with_capacity(values.len());
         let mut notes = Vec::new();
         let saturates = self.saturates_with(references, values);
+        let fixed =
+            |r: &ValueReference| matches!(self.table.source(*r), Some(Source::Adjustable(_)));
+        let settled = !self.is_unsettled() && !references.iter().any(fixed);
         for (row, value) in self.settable("set", references)?.into_iter().zip(values) {
-            accepted.push(accept(row, *value, saturates, &mut notes)?);
+            let range = self.range_now(row, settled);
+            accepted.push(accept((row, range), *value, saturates, &mut notes)?);
         }
         self.notes.append(&mut notes);
         for (reference, value) in references.iter().zip(&accepted) {
@@ -50,6 +54,16 @@ impl Component {
             }
         }
         Ok(())
+    }
+
+    /// The range that a row has with the parameters as they are. The most that an inflow lets in follows from its material's density:
+    /// where parameters wait for [`Component::settle`], so do rates.
+    fn range_now(&self, row: &Variable, settled: bool) -> Option<(f64, f64)> {
+        match self.table.source(row.reference) {
+            Some(Source::InflowRate(i)) if settled => Some((0.0, self.scene.inflows[*i].max_rate)),
+            Some(Source::InflowRate(_)) => Some((0.0, f64::MAX)),
+            _ => row.range,
+        }
     }
 
     /// Inputs that were clamped to their range since the last call of this, because `saturate_inputs` is set: one
@@ -267,14 +281,14 @@ impl VariableTable {
 
 /// The value as it is taken: inputs a little out of range, or if they are saturated far, are clamped.
 fn accept(
-    row: &Variable,
+    (row, range): (&Variable, Option<(f64, f64)>),
     value: f64,
     saturates: bool,
     notes: &mut Vec<String>,
 ) -> Result<f64, Error> {
     if row.causality == Causality::Input
         && value.is_finite()
-        && let Some((least, most)) = row.range
+        && let Some((least, most)) = range
         && !(least..=most).contains(&value)
     {
         let clamped = value.clamp(least, most);
@@ -286,7 +300,7 @@ fn accept(
             return Ok(clamped);
         }
     }
-    check_value(row, value)?;
+    check_value(row, range, value)?;
     Ok(value)
 }
 
@@ -297,8 +311,8 @@ pub(super) fn saturated(what: &str, found: f64, clamped: f64) -> String {
 }
 
 /// Finite, in range, whole where it must be.
-fn check_value(row: &Variable, value: f64) -> Result<(), Error> {
-    let (least, most) = row.range.unwrap_or((f64::MIN, f64::MAX));
+fn check_value(row: &Variable, range: Option<(f64, f64)>, value: f64) -> Result<(), Error> {
+    let (least, most) = range.unwrap_or((f64::MIN, f64::MAX));
     let whole = row.kind == ValueKind::Real || value.fract() == 0.0;
     if value.is_finite() && (least..=most).contains(&value) && whole {
         return Ok(());

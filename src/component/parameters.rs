@@ -4,10 +4,12 @@
 //! say). The engine is built anew when it is next needed: when initialisation ends, or when an adapter wants outputs
 //! before that and calls [`Component::settle`].
 
+use super::access::{RANGE_SLACK, saturated};
 use super::engine::{self, Engine};
 use super::outputs::{self, FlowMass};
 use super::{Component, Error, Life};
 use crate::scene::{Scene, SceneErrors};
+use crate::units::{shown, shown_bound};
 
 impl Component {
     /// Whether fixed parameters were set for which the engine has not been built yet.
@@ -23,17 +25,54 @@ impl Component {
     /// scene cannot be built; nothing is changed then.
     pub fn settle(&mut self) -> Result<(), Error> {
         if !self.is_unsettled() {
+            let within = self.rates_within(&self.scene)?;
+            self.hold_rates(within);
             return Ok(());
         }
         let (scene, engine) = self.build_for(&self.life.parameters)?;
+        let within = self.rates_within(&scene)?;
         let before = FlowMass::now(engine.devices());
         let outputs =
             outputs::sample(&self.table, engine.as_ref(), &before, 0.0).map_err(Error::Setup)?;
+        self.hold_rates(within);
         self.life.before.clone_from(&outputs);
         self.life.outputs = outputs;
         self.built.clone_from(&self.life.parameters);
         (self.scene, self.engine) = (scene, engine);
         Ok(())
+    }
+
+    /// Rates of inflows that this scene of other parameters lets in, and a note for each that `saturate_inputs` let be clamped.
+    fn rates_within(&self, scene: &Scene) -> Result<(Vec<f64>, Vec<String>), Error> {
+        let mut notes = Vec::new();
+        let held = self.life.inputs.inflow_rate.iter().zip(&scene.inflows);
+        let rates = held.map(|(ramp, inflow)| {
+            let (rate, most) = (ramp.value, inflow.max_rate);
+            let what = format!("inflow.{}.rate", inflow.name);
+            if rate > most * (1.0 + RANGE_SLACK) && !self.life.saturate_inputs {
+                return Err(Error::BadArgument {
+                    call: "fixed parameters",
+                    what,
+                    found: format!("{} kg/s", shown(rate)),
+                    allowed: format!(
+                        "0 to {} kg/s, density x face x velocity with these parameters: set a lower rate as well",
+                        shown_bound(most)
+                    ),
+                });
+            }
+            if rate > most * (1.0 + RANGE_SLACK) {
+                notes.push(saturated(&what, rate, most));
+            }
+            Ok(rate.min(most))
+        });
+        Ok((rates.collect::<Result<_, _>>()?, notes))
+    }
+
+    fn hold_rates(&mut self, (rates, mut notes): (Vec<f64>, Vec<String>)) {
+        for (ramp, rate) in self.life.inputs.inflow_rate.iter_mut().zip(rates) {
+            ramp.value = rate;
+        }
+        self.notes.append(&mut notes);
     }
 
     /// Scene and engine for these parameters, at the start.

@@ -415,3 +415,87 @@ fn what_blocks_a_gate_is_told_for_the_whole_step() {
     }
     assert!(held > 0 && free > 0, "{held} steps held, {free} free");
 }
+
+/// Rain from a face of 0.8 m^2 at 0.5 m/s: 4 kg/s at 10 kg/m^3 is the most, and as much more or less as the density is.
+const RAIN: &str = r#"
+name = "rain"
+dimension = 2
+[domain]
+lower = [-0.1, -1]
+upper = [0.9, 0.1]
+[numerics]
+spacing = "100 mm"
+sound_speed = 30
+[materials.foam]
+law = "fluid"
+density = 10
+consistency = 1
+[inflows.rain]
+material = "foam"
+from = ["800 mm", 0]
+to = [0, 0]
+velocity = [0, "-0.5 m/s"]
+rate = "3 kg/s"
+[outflows.end]
+lower = [-0.1, -1]
+upper = [0.9, -0.4]
+[run]
+step = "10 ms"
+until = "1 s"
+"#;
+
+#[test]
+fn the_most_that_an_inflow_lets_in_follows_the_density_that_is_set() {
+    let scene = sandgate::scene::parse("rain.toml", RAIN).unwrap_or_else(|why| panic!("{why}"));
+    let fresh = || sandgate::component::Component::new(&scene).unwrap();
+    let reference = |name: &str| fresh().variables().by_name(name).unwrap().reference;
+    let (density, rate) = (
+        reference("material.foam.density"),
+        reference("inflow.rain.rate"),
+    );
+    let saturate = reference("saturate_inputs");
+
+    // The scene's own rate is too much for a lighter fluid: said, and mended by a lower one.
+    let mut light = fresh();
+    light.set(&[density], &[5.0]).unwrap();
+    let error = light.initialize(0.0, None).unwrap_err().to_string();
+    assert!(
+        error.contains("inflow.rain.rate") && error.contains("3 kg/s") && error.contains("0 to 2"),
+        "{error}"
+    );
+    light.set(&[rate], &[1.9]).unwrap();
+    light.initialize(0.0, None).unwrap();
+    let error = light.set(&[rate], &[2.1]).unwrap_err().to_string();
+    assert!(error.contains("0 to 2 kg/s"), "{error}");
+    for _ in 0..100 {
+        light.do_step(light.time(), 0.01).unwrap();
+    }
+    // All that was asked for came, but for less than a row.
+    let came = value(&light, "inflow.rain.mass");
+    let row = 0.8 * 0.1 * 5.0;
+    assert!((came - 1.9).abs() < row, "{came} kg of 1.9");
+
+    // Or clamped and told, where that is asked for.
+    let mut clamped = fresh();
+    clamped.set(&[saturate, density], &[1.0, 5.0]).unwrap();
+    clamped.initialize(0.0, None).unwrap();
+    assert_eq!(value(&clamped, "inflow.rain.rate"), 2.0);
+    assert!(clamped.take_notes()[0].contains("found 3, clamped to 2"));
+
+    // A heavier one lets in more, set before, after or with its density, and what a slope leads to may be set again.
+    let mut heavy = fresh();
+    heavy.set(&[rate, density], &[7.0, 20.0]).unwrap();
+    heavy.initialize(0.0, None).unwrap();
+    heavy.set_input_derivatives(&[rate], &[50.0]).unwrap();
+    heavy.do_step(0.0, 0.01).unwrap();
+    let reached = value(&heavy, "inflow.rain.rate");
+    assert_eq!(reached, 7.5);
+    heavy.set(&[rate], &[reached]).unwrap();
+    assert!(heavy.set(&[rate], &[8.1]).is_err());
+
+    // With the scene's own density nothing waits.
+    let mut own = fresh();
+    assert!(own.set(&[rate], &[4.1]).is_err());
+    own.set(&[density, rate], &[10.0, 4.1]).unwrap();
+    assert!(own.initialize(0.0, None).is_err());
+}

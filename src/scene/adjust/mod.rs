@@ -64,9 +64,16 @@ impl Scene {
             for (target, value) in changed {
                 apply(raw, target, value);
             }
+            // What an inflow lets in is its input's; whether that may be, whoever holds the inputs knows.
+            let inflows = raw.inflows.iter_mut().flat_map(|list| &mut list.value.0);
+            let rates = inflows.filter_map(|inflow| inflow.value.as_mut()?.rate.as_mut());
+            rates.for_each(|rate| rate.value.0 = 0.0);
         })?;
         // Start values stay those of the text.
         scene.adjustables = self.adjustables.clone();
+        for (inflow, own) in scene.inflows.iter_mut().zip(&self.inflows) {
+            inflow.rate = own.rate;
+        }
         Ok(scene)
     }
 }
