@@ -5,7 +5,7 @@
 
 use super::engine::Devices;
 use crate::gauge::{
-    self, Crossing, DepthLine, Field, Front, MassBox, PressureProbe, Profile, Reading,
+    self, Crossing, DepthLine, Field, Front, MassBox, PRESSED_IN, PressureProbe, Profile, Reading,
 };
 use crate::gauge::{Validity, View};
 use crate::scene::{ForceTarget, Gauge, GaugeKind, Point, PressureQuantity, Scene};
@@ -87,6 +87,20 @@ impl<const D: usize> Sampler<D> {
             sights: scene.gauges.iter().map(sight).collect(),
             ranks,
         }
+    }
+
+    /// Sections that end on the face of a wall reach into it ([`Crossing::reach_into`]); `is_behind` knows walls that stand.
+    pub(crate) fn into_walls(
+        mut self,
+        spacing: f64,
+        is_behind: impl Fn(&[f64; D]) -> bool,
+    ) -> Self {
+        for gauge in &mut self.gauges {
+            if let Kind::Discharge { section, .. } = gauge {
+                section.reach_into(PRESSED_IN * spacing, &is_behind);
+            }
+        }
+        self
     }
 
     /// A communication step begins.

@@ -58,18 +58,21 @@ impl<const D: usize> Simulation<D> {
             std::array::from_fn(|k| (plan.periodic.length[k] > 0.0).then(|| (lower[k], upper[k])));
         let mut solver = Solver::new(plan, 1);
         solver.start(&mut state);
+        let solids = Solids::new(scene);
+        let spacing = scene.numerics.spacing;
+        let sampler = Sampler::new(scene).into_walls(spacing, |x| solids.holds(x));
         let mut simulation = Self {
             state,
             solver,
-            sampler: Sampler::new(scene),
-            solids: Solids::new(scene),
+            sampler,
+            solids,
             still: OnceLock::new(),
             slept_at: None,
             kept: None,
             devices: Devices::default(),
             walls: scene.walls.len(),
             most_rate: scene.inflows.iter().map(|i| i.max_rate).collect(),
-            spacing: scene.numerics.spacing,
+            spacing,
             geometry: scene::geometry(scene),
             lower,
             upper,

@@ -4,7 +4,7 @@
 //! half-open in every sense (a particle on its plane counts as past it, an edge belongs to one side), so a crossing
 //! is counted once, whatever the steps. Particle masses are multiples of a power of two, hence the sum is exact.
 
-use crate::math::dot;
+use crate::math::{dot, norm};
 
 /// A segment (planar) or parallelogram (space) and the mass that went through it.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,10 +14,14 @@ pub struct Crossing<const D: usize> {
     centre: [f64; D],
     /// Normal, from the left to the right side; not of unit length.
     normal: [f64; D],
+    /// From the corner [m].
+    edges: Vec<[f64; D]>,
     /// x -> share along each edge: dual vectors of the edges [1/m].
     dual: Vec<[f64; D]>,
     /// Whether each edge spans a whole period: then it has no ends.
     endless: Vec<bool>,
+    /// Shares of each edge between which paths are counted: 0 and 1, but where it ends on a wall.
+    ends: Vec<(f64, f64)>,
     /// Length of the period of each axis [m], if periodic.
     period: [Option<f64>; D],
     /// Net mass from left to right since the start [kg].
@@ -58,10 +62,37 @@ impl<const D: usize> Crossing<D> {
             corner,
             centre,
             normal,
+            edges: edges.to_vec(),
             dual: duals(edges),
             endless: edges.iter().map(spans).collect(),
+            ends: vec![(0.0, 1.0); edges.len()],
             period,
             mass: 0.0,
+        }
+    }
+
+    /// Lets what ends on a wall reach into it, as particles of a thin layer are pressed in a little: where a place `reach` [m] beyond
+    /// an end is behind a face and the end itself is not, all along that end.
+    pub fn reach_into(&mut self, reach: f64, is_behind: impl Fn(&[f64; D]) -> bool) {
+        for (k, edge) in self.edges.iter().enumerate() {
+            let share = reach / norm(edge);
+            let other = self.edges.iter().enumerate().find(|(n, _)| *n != k);
+            let beyond = |at: f64| {
+                let mut along = [0.1, 0.5, 0.9].into_iter();
+                along.all(|t| {
+                    let x: [f64; D] = std::array::from_fn(|a| {
+                        let aside = other.map_or(0.0, |(_, e)| t * e[a]);
+                        self.corner[a] + at * edge[a] + aside
+                    });
+                    is_behind(&x)
+                })
+            };
+            if beyond(-share) && !beyond(0.1 * share) {
+                self.ends[k].0 = -share;
+            }
+            if beyond(1.0 + share) && !beyond(1.0 - 0.1 * share) {
+                self.ends[k].1 = 1.0 + share;
+            }
         }
     }
 
@@ -91,11 +122,14 @@ impl<const D: usize> Crossing<D> {
             let offset = self.nearest(a, start[a] + share * path[a]);
             offset + self.centre[a] - self.corner[a]
         });
-        let inside = self
-            .dual
-            .iter()
-            .zip(&self.endless)
-            .all(|(dual, endless)| *endless || (0.0..1.0).contains(&dot(&through, dual)));
+        let inside =
+            self.dual
+                .iter()
+                .zip(&self.endless)
+                .zip(&self.ends)
+                .all(|((dual, endless), ends)| {
+                    *endless || (ends.0..ends.1).contains(&dot(&through, dual))
+                });
         if inside { sign } else { 0 }
     }
 
@@ -221,5 +255,22 @@ mod tests {
             // Right of +x is down.
             assert_eq!(section.count(&[x, 0.6], &[x + 0.01, 0.4]), 1, "at {x}");
         }
+    }
+
+    /// From a floor to the open, in the plane and in space.
+    #[test]
+    fn a_section_that_ends_on_a_wall_counts_what_is_pressed_into_that() {
+        let below = |reach: f64| {
+            let mut section = Crossing::new([0.0, 0.0], [0.0, 1.0], [0.0; 2], [None; 2]);
+            section.reach_into(reach, |x| x[1] < 0.0);
+            [-0.02, 0.5, 0.99, 1.01].map(|y| section.count(&[-0.1, y], &[0.1, y]))
+        };
+        assert_eq!(below(0.03), [1, 1, 1, 0]);
+        assert_eq!(below(0.01), [0, 1, 1, 0]);
+        let mut space = Crossing::new([0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [None; 3]);
+        // A floor, and a side wall along half of the section's end: only all of an end is taken.
+        space.reach_into(0.03, |x| x[1] < 0.0 || (x[2] > 1.0 && x[1] < 0.5));
+        let counts = |y: f64, z: f64| space.count(&[-0.1, y, z], &[0.1, y, z]);
+        assert_eq!([counts(-0.02, 0.5), counts(0.2, 1.02)], [1, 0]);
     }
 }

@@ -21,7 +21,7 @@ pub use crossing::Crossing;
 pub use depth::DepthLine;
 pub use front::Front;
 pub use interface::interface_stress;
-pub use mass::MassBox;
+pub use mass::{MassBox, PRESSED_IN};
 pub use pressure::PressureProbe;
 pub use profile::Profile;
 pub use solid::Solid;

@@ -24,6 +24,12 @@ impl<const D: usize> Solids<D> {
         }
     }
 
+    /// Whether a place is behind the face of a wall that never moves.
+    pub(super) fn holds(&self, at: &Vector<D>) -> bool {
+        let standing = self.walls.iter().filter(|(_, motion)| motion.is_none());
+        standing.into_iter().any(|(solid, _)| solid.holds(at, 0.0))
+    }
+
     /// All of them after the walls have moved for `time` [s], the gates at these openings.
     pub(super) fn at(&self, time: f64, openings: impl Iterator<Item = f64>) -> Vec<Solid<D>> {
         let walls = self.walls.iter().map(|(solid, motion)| match motion {
