@@ -58,7 +58,13 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         reference: args.reference.map_or(Extent::Short, Extent::Until),
         kind: args.kind(),
     };
-    pack_with(&scene, &packing, &output)?;
+    let packed = pack_with(&scene, &packing, &output)?;
+    if let Some(why) = packed.cut_short {
+        tell!(
+            "warning: reference results end at t = {} s, as the next step of this scene fails on its own: {why}",
+            packed.reference_until
+        );
+    }
     let size = std::fs::metadata(&output).map_or(0, |file| file.len());
     say(&format!(
         "{}: FMI {} co-simulation FMU of {}, {:.1} MB",

@@ -24,7 +24,7 @@ mod xml;
 
 pub use description::{description, identifier, token};
 pub use error::Error;
-pub use pack::{Packing, pack, pack_with};
+pub use pack::{Packed, Packing, pack, pack_with};
 pub use platform::Platform;
 pub use reference::Extent;
 

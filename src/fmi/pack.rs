@@ -34,12 +34,26 @@ pub struct Packing {
     pub kind: Kind,
 }
 
+/// What an FMU was packed with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Packed {
+    /// Where the reference results end [s].
+    pub reference_until: f64,
+    /// Why, if the step after that failed.
+    pub cut_short: Option<String>,
+}
+
 /// Writes an FMU of `scene` to `out`, with the scene inside a copy of the shared library at `library` and short
 /// reference results: [`pack_with`] the defaults.
 ///
 /// # Errors
 /// As [`pack_with`].
-pub fn pack(scene: &Scene, version: FmiVersion, library: &Path, out: &Path) -> Result<(), Error> {
+pub fn pack(
+    scene: &Scene,
+    version: FmiVersion,
+    library: &Path,
+    out: &Path,
+) -> Result<Packed, Error> {
     let packing = Packing {
         version,
         libraries: vec![library.to_path_buf()],
@@ -55,9 +69,9 @@ pub fn pack(scene: &Scene, version: FmiVersion, library: &Path, out: &Path) -> R
 /// under its name only when it is complete.
 ///
 /// # Errors
-/// [`Error`]: the scene cannot be built, stepped or is too long, a library is missing or of another kind, two are for
+/// [`Error`]: the scene cannot be built, stepped as far as [`Extent::Until`] says, or is too long, a library is missing or of another kind, two are for
 /// the same platform, a file cannot be read or written.
-pub fn pack_with(scene: &Scene, packing: &Packing, out: &Path) -> Result<(), Error> {
+pub fn pack_with(scene: &Scene, packing: &Packing, out: &Path) -> Result<Packed, Error> {
     let binaries = binaries(scene, packing)?;
     let component = Component::new(scene)?;
     let reference = reference::reference(scene, packing.reference)?;
@@ -113,7 +127,11 @@ pub fn pack_with(scene: &Scene, packing: &Packing, out: &Path) -> Result<(), Err
         }
     }
     let archive = archive(&entries).map_err(|source| file("write", out, source))?;
-    whole_file::replace(out, &archive).map_err(|source| file("write", out, source))
+    whole_file::replace(out, &archive).map_err(|source| file("write", out, source))?;
+    Ok(Packed {
+        reference_until: reference.until,
+        cut_short: reference.cut_short,
+    })
 }
 
 /// Names in the archive and bytes of the libraries, each with the scene in its slot.

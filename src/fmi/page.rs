@@ -181,6 +181,7 @@ mod tests {
             inputs: String::new(),
             outputs: String::new(),
             until: 0.25,
+            cut_short: None,
         };
         let page = page(&component, FmiVersion::V3, &reference);
         assert!(page.contains("<svg") && page.contains("t = 0.25 s"));

@@ -34,6 +34,8 @@ pub(super) struct Reference {
     pub(super) outputs: String,
     /// Time of the last row [s].
     pub(super) until: f64,
+    /// Why a step failed that nobody had asked for: the results end before it.
+    pub(super) cut_short: Option<String>,
 }
 
 /// Runs a scene along its schedules.
@@ -50,7 +52,7 @@ pub(super) fn reference(scene: &Scene, extent: Extent) -> Result<Reference, Erro
         Extent::Short => scene.run.until,
         Extent::Until(until) => until.min(scene.run.until),
     };
-    let mut work = 0.0;
+    let (mut work, mut cut_short) = (0.0, None);
     loop {
         let time = component.time();
         let (references, values) = component.scheduled(time);
@@ -63,7 +65,13 @@ pub(super) fn reference(scene: &Scene, extent: Extent) -> Result<Reference, Erro
         let Some(next) = next_point(time, scene.run.step, scene.run.until) else {
             break;
         };
-        let report = component.do_step(time, next - time)?;
+        let report = match component.do_step(time, next - time) {
+            Err(why) if extent == Extent::Short => {
+                cut_short = Some(why.to_string());
+                break;
+            }
+            done => done?,
+        };
         let sweeps = SWEEPS * report.substeps as f64 + report.iterations as f64;
         work += sweeps * component.statistics().particles as f64;
     }
@@ -71,6 +79,7 @@ pub(super) fn reference(scene: &Scene, extent: Extent) -> Result<Reference, Erro
         inputs: inputs.text,
         outputs: outputs.text,
         until: component.time(),
+        cut_short,
     })
 }
 
@@ -194,6 +203,17 @@ mod tests {
         let short = run(Extent::Short);
         assert!(short.until >= scene.run.step && short.until <= scene.run.until);
         assert_eq!(short.outputs, run(Extent::Short).outputs);
+    }
+
+    /// Nobody asked how far: an orchestrator may well hold up what falls here.
+    #[test]
+    fn results_end_before_a_step_that_fails() {
+        let text = include_str!("../../tests/scenes/no_floor.toml");
+        let scene = scene::parse("no_floor.toml", text).expect("it is a scene");
+        let cut = reference(&scene, Extent::Short).expect("it is cut short");
+        assert!(cut.until > 0.0 && cut.until < scene.run.until);
+        assert!(cut.cut_short.is_some_and(|why| why.contains("particle")));
+        assert!(reference(&scene, Extent::Until(scene.run.until)).is_err());
     }
 
     #[test]
