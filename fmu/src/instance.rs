@@ -18,9 +18,6 @@ use crate::journal::Journal;
 use crate::log::{Category, Log, text};
 use crate::updates::Updates;
 
-/// What `solver.threads` allows too.
-const MOST_THREADS: u32 = 256;
-
 /// FMI 2's setupExperiment: importers may leave it out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Experiment {
@@ -249,9 +246,10 @@ impl Instance {
     pub(crate) fn set_threads(&mut self, threads: u32) -> Result<(), Fault> {
         let asked = Asked::Threads(threads);
         self.journal.asks(&self.component, &asked);
-        if threads > MOST_THREADS {
+        let most = u32::from(Component::MOST_THREADS);
+        if threads > most {
             return Err(Fault::border(format!(
-                "found {threads} threads, allowed 0 (all cores) to {MOST_THREADS}"
+                "found {threads} threads, allowed 0 (all cores) to {most}"
             )));
         }
         self.component.set_threads(threads as usize);

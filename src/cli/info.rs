@@ -8,7 +8,7 @@ mod scene;
 use std::path::PathBuf;
 
 use super::clock::{cores, peak_memory};
-use super::{CliError, load_scene, say};
+use super::{CliError, load_scene, say, threads};
 use crate::component::{Causality, Component, Start};
 
 /// What may be typed after `sandgate info`.
@@ -17,7 +17,7 @@ pub(super) struct Args {
     /// The scene file, for example cases/silo_gate.toml
     case: PathBuf,
     /// Threads to measure with; 0 means all cores
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads::parser())]
     threads: u16,
 }
 

@@ -26,6 +26,7 @@ mod schema;
 mod serve;
 mod stop;
 mod stress;
+mod threads;
 mod validate;
 
 use std::io::Write as _;

@@ -7,7 +7,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::{CliError, load_scene, quantity, say, stop};
+use super::{CliError, load_scene, quantity, say, stop, threads};
 use crate::bus::{Advice, Lost, ServeOptions, Server, WhenLost, ZenohConfig};
 use crate::component::{Component, Mode};
 use crate::wire::{Observer, Unobserved};
@@ -49,7 +49,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     /// Threads to compute with; 0 means all cores; results do not depend on it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads::parser())]
     threads: u16,
 }
 

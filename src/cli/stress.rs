@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::{CliError, say, stop};
+use super::{CliError, say, stop, threads};
 use crate::stress::{
     Bounds, Campaign, Case, Check, Tried, generate, limits, page, run as run_case, shrink::shrink,
     store,
@@ -35,7 +35,7 @@ pub(super) struct Args {
     #[arg(long)]
     list: bool,
     /// Scenes side by side, each on one thread; 0 means all cores
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(0..=256))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads::parser())]
     jobs: u16,
     /// CPU time that one run of a scene may take [s]; more is a failure
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = super::bench::positive)]

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::{CliError, say, stop};
+use super::{CliError, say, stop, threads};
 use crate::validate::member::Job;
 use crate::validate::page::{self, Found, Standing};
 use crate::validate::queue::{self, Event};
@@ -29,10 +29,10 @@ pub(super) struct Args {
     #[arg(long)]
     list: bool,
     /// Runs side by side, each on one thread; 0 means all cores
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(0..=256))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = threads::parser())]
     jobs: u16,
     /// Threads of each run, for runs one after the other; 0 means all cores. Results do not depend on it; CPU times are those of all threads
-    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "jobs", value_parser = clap::value_parser!(u16).range(0..=256))]
+    #[arg(long, value_name = "N", default_value_t = 1, conflicts_with = "jobs", value_parser = threads::parser())]
     threads: u16,
     /// Coarser and fewer runs that take some minutes in all: to see that all works, not to judge
     #[arg(long)]

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
+use crate::component::Component;
 use crate::scene::{self, Scene, SceneErrors};
 
 /// What a case should come to.
@@ -103,8 +104,9 @@ impl Case {
         if drive.steps.is_empty() || drive.steps.iter().any(|h| !(*h > 0.0 && h.is_finite())) {
             return bad("steps: allowed is a list of times above 0 s, at least one");
         }
-        if drive.threads == 0 || drive.threads > 256 {
-            return bad("threads: allowed is 1 to 256");
+        let most = usize::from(Component::MOST_THREADS);
+        if !(1..=most).contains(&drive.threads) {
+            return bad(&format!("threads: allowed is 1 to {most}"));
         }
         Ok(Self { scene, drive })
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::cli::{CliError, quantity, say};
+use crate::cli::{CliError, quantity, say, threads};
 use crate::record::{Ending, RedriveOptions, Redriven, redrive};
 
 /// What may be typed after `sandgate log redrive`.
@@ -23,7 +23,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true, requires = "log")]
     particles_every: Option<f64>,
     /// Threads to compute with; 0 means all cores; results do not depend on it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads::parser())]
     threads: u16,
 }
 

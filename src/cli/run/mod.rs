@@ -18,7 +18,7 @@ mod summary;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::{CliError, load_scene, quantity, stop};
+use super::{CliError, load_scene, quantity, stop, threads};
 use crate::component::read_saved;
 use session::Session;
 
@@ -40,7 +40,7 @@ pub(super) struct Args {
     #[arg(long, requires = "out")]
     force: bool,
     /// Threads to compute with; 0 means all cores; results do not depend on it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=256))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads::parser())]
     threads: u16,
     /// Communication step, "10 ms" or plain seconds [default: the scene's run.step]
     #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]

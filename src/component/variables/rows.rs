@@ -4,6 +4,7 @@
 //! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals.
 
 use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable, gauges};
+use crate::component::Component;
 use crate::scene::{Adjustable, Gate, Inflow, Outflow, Scene};
 
 /// Where a row's value comes from.
@@ -144,6 +145,11 @@ pub(super) fn list(scene: &Scene) -> VariableTable {
     table
 }
 
+impl Component {
+    /// Most threads that anybody may ask for, here and on the command line.
+    pub const MOST_THREADS: u16 = 256;
+}
+
 fn general() -> impl Iterator<Item = Row> {
     let mut time = Row::output("time", "s", Source::Time, "simulated time");
     time.variable.causality = Causality::Independent;
@@ -153,7 +159,7 @@ fn general() -> impl Iterator<Item = Row> {
         Source::Threads,
         "threads of the solver, 0 for all cores; results do not depend on it",
     )
-    .within(0.0, 256.0);
+    .within(0.0, f64::from(Component::MOST_THREADS));
     threads.variable.kind = ValueKind::Integer;
     threads.variable.causality = Causality::Parameter;
     threads.variable.variability = Variability::Tunable;
