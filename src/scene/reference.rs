@@ -209,10 +209,7 @@ impl Page {
             (Some("array"), items) if schema["maxItems"] == 3 => {
                 format!("vector of {}", self.value(items))
             }
-            (Some("array"), items) if schema["maxItems"] == 2 => {
-                let _ = items;
-                "`[time, value]`".to_owned()
-            }
+            (Some("array"), _) if schema["maxItems"] == 2 => "`[time, value]`".to_owned(),
             (Some("array"), items) => format!("list of {}", self.value(items)),
             (Some("boolean"), _) => "`true` or `false`".to_owned(),
             (Some("integer"), _) => "whole number".to_owned(),

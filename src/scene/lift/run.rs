@@ -39,23 +39,13 @@ impl Lift<'_> {
     }
 
     pub(super) fn log(&mut self, run: Option<Run>) -> Option<LogSettings> {
-        // An absent [log] is one with every key left out: 50 ms, or the step if that is longer.
-        const USUAL: f64 = 0.05;
         let step = run.map_or(0.0, |r| r.step);
-        let Some(log) = &self.raw.log else {
-            return Some(LogSettings {
-                particles_every: USUAL.max(step),
-                required: true,
-                deterministic: false,
-                rotate_every: 0.0,
-                rotate_bytes: 0,
-                sync_every_flush: false,
-            });
-        };
+        let log = self.raw.log.as_ref()?;
         let every = log.value.particles_every.as_ref()?;
         let left_out = !log.value.given.contains(&"particles_every");
         let mut particles_every = every.value.0;
         if left_out {
+            // As often as is usual, but no more often than there is something new.
             particles_every = particles_every.max(step);
         } else if particles_every > 0.0 && particles_every < step * (1.0 - 1e-9) {
             self.problems.report(

@@ -10,7 +10,7 @@ macro_rules! table {
         $name:ident {
             $(
                 $(#[doc = $doc:literal])+
-                $need:ident $field:ident : $ty:ty $(, in $range:expr)? $(, default $default:literal)? ;
+                $need:ident $field:ident : $ty:ty $(, in $range:expr)? $(, default $default:tt)? ;
             )*
         }
     ) => {

@@ -35,7 +35,7 @@ table! {
         /// For runs without an orchestrator; one for each input at most.
         optional schedule: List<RawSchedule>;
         /// What a run writes to its log.
-        optional log: RawLog;
+        optional log: RawLog, default {};
     }
 }
 
