@@ -121,6 +121,7 @@ mod tests {
                     what: String::new(),
                     found: String::new(),
                     allowed: String::new(),
+                    remedy: String::new(),
                 },
                 Code::Range,
             ),

@@ -338,5 +338,6 @@ pub(super) fn bad(call: &'static str, what: &str, found: &str, allowed: &str) ->
         what: what.to_owned(),
         found: found.to_owned(),
         allowed: allowed.to_owned(),
+        remedy: String::new(),
     }
 }

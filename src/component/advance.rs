@@ -155,6 +155,7 @@ impl Component {
                 found: format!("{} s", shown(found)),
                 allowed,
             })
+                remedy: String::new(),
         };
         let time = self.life.time;
         if !(h.is_finite() && h >= f64::MIN_POSITIVE) {
@@ -210,6 +211,7 @@ impl Component {
             notes.push(saturated(&what, reached, reached.clamp(0.0, most)));
         }
         Ok(notes)
+                    remedy: String::new(),
     }
 
     /// Inputs hold the value they reached, inside their range; slopes were for one step.

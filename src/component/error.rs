@@ -20,7 +20,7 @@ pub enum Error {
         allowed: String,
     },
     /// An argument out of its range.
-    #[error("{call}: {what}: found {found}, allowed {allowed}")]
+    #[error("{call}: {what}: found {found}, allowed {allowed}{}", then(remedy))]
     BadArgument {
         /// The call.
         call: &'static str,
@@ -30,6 +30,8 @@ pub enum Error {
         found: String,
         /// What is allowed.
         allowed: String,
+        /// What to do, where what is allowed does not say it; empty elsewhere.
+        remedy: String,
     },
     /// The solver gave up: names particle, time and quantity.
     #[error("step failed: {0}")]
@@ -37,6 +39,14 @@ pub enum Error {
     /// Saved bytes that cannot be used.
     #[error("saved state refused: {0}")]
     Snapshot(String),
+}
+
+/// What to do, as the end of a sentence.
+fn then(remedy: &str) -> String {
+    match remedy {
+        "" => String::new(),
+        remedy => format!("; {remedy}"),
+    }
 }
 
 /// How calls become possible again after a failed step; elsewhere the modes in which they are say it.

@@ -47,6 +47,7 @@ impl Component {
                 what: what.to_owned(),
                 found: format!("{} s", shown(found)),
                 allowed,
+                remedy: String::new(),
             })
         };
         if !start.is_finite() {
@@ -86,9 +87,10 @@ impl Component {
             found: format!("{} s", shown(time)),
             allowed: format!(
                 "at most {} s from 0, where doubles still tell times {fine:.1e} s apart, a thousandth of this scene's acoustic \
-                 step; count time from a later origin",
+                 step",
                 latest.floor()
             ),
+            remedy: "count time from a later origin".to_owned(),
         })
     }
 

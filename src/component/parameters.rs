@@ -112,17 +112,49 @@ impl Component {
     }
 }
 
-/// The first rule that the parameters break together.
+/// The rules that the parameters break together: the first in full, and where the others are.
 fn broken_rule(errors: &SceneErrors) -> Error {
-    let first = errors.problems().first();
+    let [first, others @ ..] = errors.problems() else {
+        return Error::Setup(errors.to_string());
+    };
+    let mut remedy = first.remedy.clone();
+    if !others.is_empty() {
+        let keys: Vec<_> = others.iter().map(|e| e.key.as_str()).collect();
+        remedy += &format!("; and {} more, at {}", others.len(), keys.join(", "));
+    }
     Error::BadArgument {
         call: "fixed parameters",
-        what: first.map_or_else(String::new, |e| e.key.clone()),
-        found: first.map_or_else(|| errors.to_string(), |e| e.found.clone()),
-        allowed: first.map_or_else(String::new, |e| e.allowed.clone()),
+        what: first.key.clone(),
+        found: first.found.clone(),
+        allowed: first.allowed.clone(),
+        remedy,
     }
 }
 
 pub(super) fn same_bits(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn broken_rules_say_what_to_do_and_where_the_others_are() {
+        // Several rules of one scene.
+        let text = include_str!("../../tests/scenes/bad/many_problems.toml");
+        let errors = crate::scene::parse("many_problems.toml", text).unwrap_err();
+        let [first, others @ ..] = errors.problems() else {
+            panic!("{errors}")
+        };
+        let told = broken_rule(&errors).to_string();
+        for part in [&first.key, &first.found, &first.allowed, &first.remedy] {
+            assert!(told.contains(part.as_str()), "{told}");
+        }
+        assert!(
+            told.contains(&format!("; and {} more, at ", others.len())),
+            "{told}"
+        );
+        assert!(others.iter().all(|e| told.contains(&e.key)), "{told}");
+    }
 }
