@@ -183,9 +183,9 @@ impl Recorder {
         if every <= 0.0 {
             return false;
         }
-        // A billionth of the interval is allowed for, as communication points are sums of rounded steps.
-        let due = ((time - self.first_time) / every + 1e-9).floor() as u64 + 1;
-        let come = due > self.snapshots;
+        let due = snapshots_due(time - self.first_time, every);
+        // More than can be counted: one each time.
+        let come = due > self.snapshots || due == u64::MAX;
         self.snapshots = due;
         come
     }
@@ -203,6 +203,14 @@ impl Recorder {
             _ => Ok(()),
         }
     }
+}
+
+/// Snapshots that are due after so long, the first at once [s].
+fn snapshots_due(elapsed: f64, every: f64) -> u64 {
+    // A billionth of the interval is allowed for, as communication points are sums of rounded steps.
+    let whole = (elapsed / every + 1e-9).floor();
+    // `as` saturates.
+    (whole as u64).saturating_add(1)
 }
 
 /// A reply without its field `wall_us`, if it has it. The text within cannot be part of a string: there quotes are escaped.
@@ -226,4 +234,20 @@ fn write(file: &mut LogFile, deterministic: bool, channel: &mut Channel, time: f
     let sequence = channel.next as u32;
     file.message(time, channel.id, sequence, (log_time, publish_time), data);
     channel.next += 1;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::snapshots_due;
+
+    #[test]
+    fn snapshots_are_counted_however_many_are_due() {
+        assert_eq!(snapshots_due(0.0, 0.05), 1);
+        assert_eq!(snapshots_due(0.049, 0.05), 1);
+        // Three steps of 0.1 come to a little more or less.
+        assert_eq!(snapshots_due(0.1 + 0.2, 0.1), 4);
+        assert_eq!(snapshots_due(0.3 - 1e-12, 0.1), 4);
+        assert_eq!(snapshots_due(1.0, 1e-300), u64::MAX);
+        assert_eq!(snapshots_due(1.0, f64::MIN_POSITIVE), u64::MAX);
+    }
 }
