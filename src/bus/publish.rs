@@ -106,7 +106,7 @@ impl Publisher {
             .collect();
         let stats: StepStats = convert::step_stats(component, report, sequence);
         batch.push(publication(keys::stats(&self.base).into(), &stats));
-        for frame in convert::gate_frames(component).unwrap_or_default() {
+        for frame in convert::frames(component).unwrap_or_default() {
             let frame: FrameTransform = frame;
             let key = keys::frame(&self.base, &frame.child_frame_id);
             batch.push(publication(key.into(), &frame));

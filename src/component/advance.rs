@@ -6,6 +6,7 @@ use super::lifecycle::{self, Call};
 use super::outputs::{self, FlowMass};
 use super::watch::{Intermediate, Wish};
 use super::{Component, Error, Mode, StepReport};
+use crate::scene::InputTarget;
 use crate::units::{shown, shown_bound};
 
 /// Who looks at the internal steps of a communication step.
@@ -154,8 +155,8 @@ impl Component {
                 what: what.to_owned(),
                 found: format!("{} s", shown(found)),
                 allowed,
-            })
                 remedy: String::new(),
+            })
         };
         let time = self.life.time;
         if !(h.is_finite() && h >= f64::MIN_POSITIVE) {
@@ -187,17 +188,21 @@ impl Component {
     fn check_ramps(&self, h: f64) -> Result<Vec<String>, Error> {
         let mut notes = Vec::new();
         let inputs = &self.life.inputs;
-        let openings = inputs.gate_opening.iter().zip(&self.scene.gates);
+        let openings = inputs.gate_opening.iter().enumerate();
+        let openings = openings.map(|(i, ramp)| (ramp, InputTarget::GateOpening(i), 1.0));
         let rates = inputs.inflow_rate.iter().zip(&self.scene.inflows);
-        let openings = openings.map(|(ramp, g)| (ramp, format!("gate.{}.opening", g.name), 1.0));
-        let rates = rates.map(|(ramp, i)| (ramp, format!("inflow.{}.rate", i.name), i.max_rate));
-        for (ramp, name, most) in openings.chain(rates) {
+        let rates = rates.enumerate().map(|(i, (ramp, inflow))| {
+            let most = inflow.max_rate;
+            (ramp, InputTarget::InflowRate(i), most)
+        });
+        for (ramp, input, most) in openings.chain(rates) {
             let reached = ramp.at(h);
             let slack = SLOPE_SLACK * most;
             if ramp.slope == 0.0 || (-slack..=most + slack).contains(&reached) {
                 continue;
             }
             let slope = shown(ramp.slope);
+            let name = &self.table.rows()[self.table.input(input) as usize].name;
             let what = format!("{name} at the end of the step, by its slope {slope}");
             // An end that is not finite cannot be held to a range.
             if !self.life.saturate_inputs || !reached.is_finite() {
@@ -206,12 +211,12 @@ impl Component {
                     what,
                     found: shown(reached),
                     allowed: format!("0 to {}", shown_bound(most)),
+                    remedy: String::new(),
                 });
             }
             notes.push(saturated(&what, reached, reached.clamp(0.0, most)));
         }
         Ok(notes)
-                    remedy: String::new(),
     }
 
     /// Inputs hold the value they reached, inside their range; slopes were for one step.

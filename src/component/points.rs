@@ -5,7 +5,7 @@
 //! on the wire.
 
 use super::{Component, ValueReference};
-use crate::scene::InputTarget;
+use crate::scene::Schedule;
 
 /// Share of a step within which two times count as the same point.
 const SLACK: f64 = 1e-9;
@@ -68,20 +68,11 @@ impl Component {
     /// The scene's scheduled inputs at `time` [s]: references and values for one [`Component::set`].
     #[must_use]
     pub fn scheduled(&self, time: f64) -> (Vec<ValueReference>, Vec<f64>) {
-        let scene = self.scene();
-        let value = |schedule: &crate::scene::Schedule| {
-            let name = match schedule.input {
-                InputTarget::GateOpening(gate) => {
-                    format!("gate.{}.opening", scene.gates[gate].name)
-                }
-                InputTarget::InflowRate(inflow) => {
-                    format!("inflow.{}.rate", scene.inflows[inflow].name)
-                }
-            };
-            let variable = self.variables().by_name(&name)?;
-            Some((variable.reference, schedule.value_at(time)))
+        let value = |schedule: &Schedule| {
+            let reference = self.variables().input(schedule.input);
+            (reference, schedule.value_at(time))
         };
-        scene.schedules.iter().filter_map(value).unzip()
+        self.scene().schedules.iter().map(value).unzip()
     }
 }
 

@@ -10,7 +10,7 @@ mod rows;
 pub use document::variables_markdown;
 pub(super) use rows::Source;
 
-use crate::scene::Scene;
+use crate::scene::{InputTarget, Scene};
 
 /// Handle of a variable, the same in FMI 2, FMI 3, C and Zenoh.
 pub type ValueReference = u32;
@@ -164,9 +164,88 @@ impl VariableTable {
         self.rows.get(reference as usize)
     }
 
+    /// The input that a schedule of the scene sets.
+    #[must_use]
+    pub fn input(&self, input: InputTarget) -> ValueReference {
+        self.of_source(match input {
+            InputTarget::GateOpening(gate) => Source::GateOpening(gate),
+            InputTarget::InflowRate(inflow) => Source::InflowRate(inflow),
+        })
+    }
+
+    /// The opening that a gate of the scene has, by its index.
+    #[must_use]
+    pub fn actual_opening(&self, gate: usize) -> ValueReference {
+        self.of_source(Source::GateActualOpening(gate))
+    }
+
+    /// Whether material keeps a gate of the scene from following its input, by its index.
+    #[must_use]
+    pub fn gate_blocked(&self, gate: usize) -> ValueReference {
+        self.of_source(Source::GateBlocked(gate))
+    }
+
+    /// The mass that an inflow of the scene let in, by its index.
+    #[must_use]
+    pub fn inflow_mass(&self, inflow: usize) -> ValueReference {
+        self.of_source(Source::InflowMass(inflow))
+    }
+
+    /// The share of the mass that is too fast for the sound speed.
+    #[must_use]
+    pub fn share_fast(&self) -> ValueReference {
+        self.of_source(Source::ShareFast)
+    }
+
+    /// The share of the mass that is squeezed too much.
+    #[must_use]
+    pub fn share_squeezed(&self) -> ValueReference {
+        self.of_source(Source::ShareSqueezed)
+    }
+
+    /// The row with this source: `rows` has one for each device of the scene, so that one without is a device of another.
+    fn of_source(&self, source: Source) -> ValueReference {
+        let place = self.sources.iter().position(|other| *other == source);
+        assert!(place.is_some(), "no variable of this scene is {source:?}");
+        place.unwrap_or_default() as ValueReference
+    }
+
     /// By name.
     #[must_use]
     pub fn by_name(&self, name: &str) -> Option<&Variable> {
         self.rows.iter().find(|v| v.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variables_of_devices_are_found_by_what_they_are() {
+        let text = include_str!("../../tests/scenes/devices.toml");
+        let table = VariableTable::of(&crate::scene::parse("devices.toml", text).unwrap());
+        for (reference, name) in [
+            (
+                table.input(InputTarget::GateOpening(0)),
+                "gate.sluice.opening",
+            ),
+            (table.input(InputTarget::InflowRate(0)), "inflow.feed.rate"),
+            (table.actual_opening(0), "gate.sluice.actual_opening"),
+            (table.gate_blocked(0), "gate.sluice.blocked"),
+            (table.inflow_mass(0), "inflow.feed.mass"),
+            (table.share_fast(), "validity.share_fast"),
+            (table.share_squeezed(), "validity.share_squeezed"),
+        ] {
+            assert_eq!(table.rows()[reference as usize].name, name);
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "GateActualOpening(7)")]
+    fn a_device_of_another_scene_has_no_variables() {
+        let text = include_str!("../../tests/scenes/devices.toml");
+        let _ = VariableTable::of(&crate::scene::parse("devices.toml", text).unwrap())
+            .actual_opening(7);
     }
 }

@@ -122,7 +122,7 @@ impl Run {
             }
             Body::Frame(frame) => {
                 self.done.compared += 1;
-                let own = convert::gate_frames(component)?;
+                let own = convert::frames(component)?;
                 let same = own.contains(&frame);
                 (!same).then(|| (frame.child_frame_id, "it is elsewhere now".to_owned()))
             }

@@ -24,19 +24,18 @@ impl Before {
     /// Now.
     pub(super) fn of(component: &Component, totals: Totals) -> Self {
         let ledger = component.ledger();
-        let opening = |name: &str| {
-            let name = format!("gate.{name}.actual_opening");
-            let row = component.variables().by_name(&name);
+        let opening = |gate: usize| {
             let mut value = [0.0];
-            row.map(|row| component.get(&[row.reference], &mut value));
+            // What is of the component's own table can be read in every mode that a ride is in.
+            let _ = component.get(&[component.variables().actual_opening(gate)], &mut value);
             value[0]
         };
-        let gates = component.scene().gates.iter();
+        let gates = 0..component.scene().gates.len();
         Self {
             totals,
             mass: ledger.present,
             inflow: ledger.inflow,
-            openings: gates.map(|gate| opening(&gate.name)).collect(),
+            openings: gates.map(opening).collect(),
         }
     }
 }

@@ -55,15 +55,9 @@ impl<'a> Ride<'a> {
     pub(super) fn new(case: &'a Case, scene: &'a Scene, most_cpu: f64) -> Result<Self, Error> {
         let mut component = Component::new(scene)?;
         component.initialize(0.0, None)?;
-        let name = |schedule: &Schedule| match schedule.input {
-            InputTarget::GateOpening(i) => format!("gate.{}.opening", scene.gates[i].name),
-            InputTarget::InflowRate(i) => format!("inflow.{}.rate", scene.inflows[i].name),
-        };
-        let inputs = scene
-            .schedules
-            .iter()
-            .filter_map(|s| Some((component.variables().by_name(&name(s))?.reference, s)))
-            .collect();
+        let table = component.variables();
+        let schedules = scene.schedules.iter();
+        let inputs = schedules.map(|s| (table.input(s.input), s)).collect();
         let internal_step = scene.numerics.longest_step();
         Ok(Self {
             case,

@@ -190,7 +190,7 @@ pub fn point_cloud(component: &Component) -> PointCloud {
 ///
 /// # Errors
 /// Those of [`Component::get`].
-pub fn gate_frames(component: &Component) -> Result<Vec<FrameTransform>, component::Error> {
+pub fn frames(component: &Component) -> Result<Vec<FrameTransform>, component::Error> {
     let time = component.wall_time();
     let rigid = component.scene().walls.iter().filter(|w| w.rigid);
     let mut frames: Vec<FrameTransform> = rigid
@@ -199,12 +199,9 @@ pub fn gate_frames(component: &Component) -> Result<Vec<FrameTransform>, compone
             ..wall_frame(wall, time)
         })
         .collect();
-    for gate in &component.scene().gates {
-        let name = format!("gate.{}.actual_opening", gate.name);
-        let mut opening = [gate.start];
-        if let Some(variable) = component.variables().by_name(&name) {
-            component.get(&[variable.reference], &mut opening)?;
-        }
+    for (i, gate) in component.scene().gates.iter().enumerate() {
+        let mut opening = [0.0];
+        component.get(&[component.variables().actual_opening(i)], &mut opening)?;
         let shift = |axis: usize| opening[0] * (gate.to[axis] - gate.from[axis]);
         frames.push(FrameTransform {
             timestamp: Some(timestamp(component.time())),

@@ -1,7 +1,7 @@
 //! Scene → what viewers draw: walls, gates, inflows, outflows and gauges as lines, boxes and texts.
 //!
 //! A gate is drawn closed in a frame of its own, `gate.NAME`, and a wall that moves as a whole where it starts in
-//! `wall.NAME`; [`gate_frames`](super::convert::gate_frames) say where these frames are. Particles are in [`point_cloud`](super::convert::point_cloud).
+//! `wall.NAME`; [`frames`](super::convert::frames) say where these frames are. Particles are in [`point_cloud`](super::convert::point_cloud).
 
 use super::convert::{IDENTITY, WORLD, pose, timestamp};
 use super::foxglove::{

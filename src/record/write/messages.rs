@@ -145,7 +145,7 @@ impl Recorder {
         write(&mut self.file, deterministic, channel, t, &data);
     }
 
-    /// Outputs, figures, frames of the gates and, when due, particles.
+    /// Outputs, figures, frames of gates and moving walls and, when due, particles.
     pub(super) fn outputs(
         &mut self,
         component: &Component,
@@ -161,7 +161,7 @@ impl Recorder {
         let stats = &mut self.channels.stats;
         let data = convert::step_stats(component, report, stats.next).encode_to_vec();
         write(&mut self.file, deterministic, stats, time, &data);
-        for frame in convert::gate_frames(component)? {
+        for frame in convert::frames(component)? {
             let channel = &mut self.channels.frames;
             write(
                 &mut self.file,
