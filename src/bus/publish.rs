@@ -5,7 +5,7 @@
 
 use super::queue::Giver;
 use super::status::{Shared, lock};
-use crate::component::{Component, StepReport, ValueReference};
+use crate::component::{self, Component, StepReport, ValueReference};
 use crate::wire::convert::{self, Output};
 use crate::wire::foxglove::{FrameTransform, Log, LogLevel, PointCloud, SceneUpdate};
 use crate::wire::messages::{Applied, AppliedEvent, Command, Gauge, StepStats};
@@ -41,6 +41,8 @@ pub(super) struct Publisher {
     last: Arc<LastValues>,
     particles_wanted: Arc<AtomicBool>,
     shared: Arc<Shared>,
+    /// Whether it has been told that something cannot be read.
+    warned: bool,
 }
 
 impl Publisher {
@@ -66,6 +68,7 @@ impl Publisher {
             last,
             particles_wanted,
             shared,
+            warned: false,
         }
     }
 
@@ -90,26 +93,38 @@ impl Publisher {
         self.shared.dropped_publications.fetch_add(lost, Relaxed);
     }
 
-    /// All outputs, the figures of the solver, where the gates are, and the particles if somebody wants them.
+    /// Tells once that a component's own variables cannot be read, which is a defect: what is published lacks them.
+    pub(super) fn tell_unread(&mut self, time: f64, error: &component::Error) {
+        if !std::mem::replace(&mut self.warned, true) {
+            let text = format!("outputs are missing here: {error}");
+            self.on_log(time, LogLevel::Error, "bus", &text);
+        }
+    }
+
+    /// All outputs, the figures of the solver, where gates and moving walls are, and the particles if somebody wants them.
     fn outputs(&mut self, component: &Component, report: Option<&StepReport>) -> Vec<Publication> {
         let step = component.communication_steps();
         let sequence = self.sequence;
         self.sequence += 1;
-        let mut batch: Vec<_> = self
-            .outputs
-            .iter()
-            // The outputs are those of this component's own table, so that reading them cannot fail.
-            .filter_map(|(key, output)| {
-                let gauge: Gauge = convert::gauge(component, output, step, sequence).ok()?;
-                Some(publication(key.clone(), &gauge))
-            })
-            .collect();
+        let mut batch = Vec::new();
+        let mut unread = None;
+        for (key, output) in &self.outputs {
+            match convert::gauge(component, output, step, sequence) {
+                Ok(gauge) => batch.push(publication::<Gauge>(key.clone(), &gauge)),
+                Err(error) => unread = Some(error),
+            }
+        }
         let stats: StepStats = convert::step_stats(component, report, sequence);
         batch.push(publication(keys::stats(&self.base).into(), &stats));
-        for frame in convert::frames(component).unwrap_or_default() {
-            let frame: FrameTransform = frame;
-            let key = keys::frame(&self.base, &frame.child_frame_id);
-            batch.push(publication(key.into(), &frame));
+        match convert::frames(component) {
+            Ok(frames) => batch.extend(frames.iter().map(|frame: &FrameTransform| {
+                let key = keys::frame(&self.base, &frame.child_frame_id);
+                publication(key.into(), frame)
+            })),
+            Err(error) => unread = Some(error),
+        }
+        if let Some(error) = unread {
+            self.tell_unread(component.time(), &error);
         }
         if self.particles_wanted.load(Relaxed) {
             let cloud: PointCloud = convert::point_cloud(component);
@@ -244,5 +259,45 @@ impl Observer for Publisher {
             line: 0,
         };
         self.send(vec![publication(keys::log(&self.base).into(), &line)]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bus::queue::queue;
+    use crate::bus::status::Status;
+    use prost::Message as _;
+
+    fn component(text: &str) -> Component {
+        let scene = crate::scene::parse("scene.toml", text).unwrap();
+        let mut component = Component::new(&scene).unwrap();
+        component.initialize(0.0, None).unwrap();
+        component
+    }
+
+    #[test]
+    fn outputs_that_cannot_be_read_are_told_once() {
+        let own = component(include_str!("../../tests/scenes/devices.toml"));
+        // With fewer variables.
+        let other = component(include_str!("../../tests/scenes/small_silo.toml"));
+        let (queue, publications) = queue();
+        let (last, wanted) = (Arc::default(), Arc::default());
+        let shared = Arc::new(Shared::new(Status::of(&own, 0, None)));
+        let mut publisher = Publisher::new("base", &own, queue, last, wanted, shared);
+        for _ in 0..2 {
+            publisher.on_jump(&other, AppliedEvent::Reset, "test");
+        }
+        publisher.on_jump(&own, AppliedEvent::Reset, "test");
+        drop(publisher);
+        let lines: Vec<_> = publications
+            .flatten()
+            .filter(|publication| *publication.key == *keys::log("base"))
+            .map(|publication| Log::decode(&publication.bytes[..]).unwrap().message)
+            .collect();
+        let [line] = &lines[..] else {
+            panic!("{lines:?}")
+        };
+        assert!(line.contains("outputs are missing here"), "{line}");
     }
 }

@@ -104,12 +104,15 @@ pub(super) fn rows<'t>(
             .iter()
             .map(|name| find(table, name, |_| true))
             .collect(),
-        None => Ok(table
-            .rows()
-            .iter()
-            .filter(|v| v.element_of.is_none() && !table.is_for_host(v))
-            .collect()),
+        None => Ok(all_rows(table)),
     }
+}
+
+/// All rows: arrays whole, not their elements; none for the host.
+pub(super) fn all_rows(table: &VariableTable) -> Vec<&Variable> {
+    let rows = table.rows().iter();
+    rows.filter(|v| v.element_of.is_none() && !table.is_for_host(v))
+        .collect()
 }
 
 /// Elements of arrays by name: the array's name, and which one.
@@ -172,12 +175,7 @@ pub(super) fn describe(table: &VariableTable) -> Value {
             "max": v.range.map_or(Value::Null, |(_, max)| number(max)),
         })
     };
-    table
-        .rows()
-        .iter()
-        .filter(|v| v.element_of.is_none() && !table.is_for_host(v))
-        .map(describe_one)
-        .collect()
+    all_rows(table).into_iter().map(describe_one).collect()
 }
 
 fn show(variable: &Variable, flat: &[f64]) -> Value {

@@ -245,10 +245,9 @@ impl Beside {
         self.time = component.time();
         self.shared.set_busy(None);
         self.shared.update(Status::of(component, self.epoch, None));
-        let rows = values::rows(component.variables(), None).unwrap_or_default();
-        // Values of the component's own rows can be read.
-        if let Ok(values) = values::read(component, &rows) {
-            *lock(&self.aside.values) = values;
+        match values::read(component, &values::all_rows(component.variables())) {
+            Ok(values) => *lock(&self.aside.values) = values,
+            Err(error) => self.publisher.tell_unread(self.time, &error),
         }
     }
 
