@@ -58,7 +58,13 @@ const VERBS: [(Verb, &str, &[&str], bool); 12] = [
     (Verb::Terminate, "terminate", &["expect_step"], true),
 ];
 
+/// Longest body of most requests (bytes).
+const BODY: usize = 1 << 20;
+
 impl Verb {
+    /// Longest state that `restore` takes, as base64 (bytes): 47 MiB of state.
+    pub const MOST_STATE: usize = 63 << 20;
+
     /// All of them.
     pub fn all() -> impl Iterator<Item = Self> {
         VERBS.iter().map(|row| row.0)
@@ -117,8 +123,8 @@ impl Verb {
     #[must_use]
     pub fn max_body(self) -> usize {
         match self {
-            Self::Restore => 64 << 20,
-            _ => 1 << 20,
+            Self::Restore => Self::MOST_STATE + BODY,
+            _ => BODY,
         }
     }
 }

@@ -11,6 +11,7 @@ use crate::bus::values::{self, Assignment};
 use crate::bus::verb::Verb;
 use crate::component::{Component, Mode};
 use crate::wire::Observer;
+use crate::wire::foxglove::LogLevel;
 use crate::wire::messages::AppliedEvent;
 use serde_json::{Value, json};
 
@@ -53,7 +54,7 @@ impl Protocol {
                 Ok(Fields::new())
             }
             Verb::Reset => self.reset(component, request, observer),
-            Verb::Save => save(component),
+            Verb::Save => save(component, Verb::MOST_STATE, observer),
             Verb::Restore => self.restore(component, request, observer),
             Verb::Log => {
                 if let Some((level, text)) = &request.line {
@@ -140,13 +141,31 @@ impl Protocol {
     }
 }
 
-/// The state, as text.
-fn save(component: &Component) -> Result<Fields, Refusal> {
+/// The state, as text. One that is longer than `restore` takes (`most`) is given all the same, since a file of it can be gone on
+/// with, but with a warning, so that nobody counts on it.
+fn save(
+    component: &Component,
+    most: usize,
+    observer: &mut dyn Observer,
+) -> Result<Fields, Refusal> {
     let state = component.save()?;
-    Ok(object(
+    let text = base64_text(&state);
+    let warning = (text.len() > most).then(|| {
+        format!(
+            "save: found a state of {} bytes as text, allowed {most} in restore: it cannot be restored over Zenoh; decode it into a file \
+             and go on with `sandgate run CASE --resume FILE`, or use a coarser numerics.spacing",
+            text.len()
+        )
+    });
+    let mut fields = object(
         json!({"bytes": state.len(), "state_hash": component.state_hash(),
-                     "state": base64_text(&state)}),
-    ))
+                     "state": text}),
+    );
+    if let Some(warning) = warning {
+        observer.on_log(component.time(), LogLevel::Warning, "bus", &warning);
+        fields.insert("warning".into(), warning.into());
+    }
+    Ok(fields)
 }
 
 /// Inputs set, outputs read.
@@ -198,5 +217,51 @@ pub(super) fn object(value: Value) -> Fields {
     match value {
         Value::Object(map) => map,
         _ => Fields::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::Unobserved;
+
+    #[test]
+    fn a_state_that_restore_does_not_take_is_saved_with_a_warning() {
+        let text = include_str!("../../../tests/scenes/small_silo.toml");
+        let scene = crate::scene::parse("small_silo.toml", text).unwrap();
+        let mut component = Component::new(&scene).unwrap();
+        component.initialize(0.0, None).unwrap();
+        let length = base64_text(&component.save().unwrap()).len();
+        let fits = save(&component, length, &mut Unobserved).unwrap();
+        assert_eq!(fits.get("warning"), None);
+        let not = save(&component, length - 1, &mut Unobserved).unwrap();
+        assert_eq!(not["state"], fits["state"]);
+        let warning = not["warning"].as_str().unwrap();
+        for part in [
+            &(length - 1).to_string()[..],
+            "restored",
+            "--resume",
+            "coarser",
+        ] {
+            assert!(warning.contains(part), "{warning}");
+        }
+    }
+
+    /// The longest state fits into a body with all that may stand beside it.
+    #[test]
+    fn restore_takes_what_is_saved_without_a_warning() {
+        let restore = |length: usize| {
+            let id = "\\u0041".repeat(64);
+            let state = "A".repeat(length);
+            let body = format!(
+                r#"{{"req":"{id}","client":"{id}","expect_step":{},"state":"{state}"}}"#,
+                u64::MAX
+            );
+            Request::parse(Verb::Restore, body.as_bytes())
+        };
+        let request = restore(Verb::MOST_STATE).unwrap();
+        assert_eq!(request.state.len(), Verb::MOST_STATE / 4 * 3);
+        let refusal = restore(Verb::MOST_STATE + (1 << 20)).unwrap_err();
+        assert_eq!(refusal.code, Code::TooLarge);
     }
 }
