@@ -1,10 +1,11 @@
 //! `sandgate run CASE`: the scene's component from start to end, stepped at the scene's communication step with
 //! the scene's schedules as inputs.
 //!
-//! `session` steps, `log` records, `folder` decides where files go, `lock` keeps other runs out of there, `series` keeps scalars over time, `plot` draws them,
+//! `session` steps, `log` records, `folder` decides where files go, `lock` keeps other runs out of there, `series` writes scalars over time to `table` and keeps a `curve` of each that `plot` draws,
 //! `summary` holds the final figures, `progress` shows how far it is. What the component computes does not depend
 //! on anything here but communication steps and inputs.
 
+mod curve;
 mod folder;
 mod lock;
 mod log;
@@ -14,6 +15,7 @@ mod progress;
 mod series;
 mod session;
 mod summary;
+mod table;
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};

@@ -1,10 +1,10 @@
 //! What a run's figures say of its scene, in words for people.
 
+use super::series::Figures;
 use super::session::Session;
 use super::summary::{extremes, short};
 use crate::cli::remarks::remarks;
-use crate::scene::Inflow;
-use crate::scene::Scene;
+use crate::scene::{Inflow, InputTarget, Scene};
 
 /// A larger share of fast mass than that of single splashes is worth a word, and of the time in which a gate stood still.
 const MUCH: f64 = 0.05;
@@ -15,26 +15,26 @@ const LITTLE: f64 = 0.01;
 /// Lines under the table of a run.
 pub(super) fn notes(session: &Session) -> Vec<String> {
     let scene = session.component.scene();
-    let (time, spacing) = (&session.series.time[..], scene.numerics.spacing);
-    let values = |name: String| {
-        let column = session.series.columns.iter().find(|c| c.name == name)?;
-        Some(&column.values[..])
-    };
-    let blocked = scene.inflows.iter().filter_map(|inflow| {
-        let rate = values(format!("inflow.{}.rate", inflow.name))?;
-        let mass = values(format!("inflow.{}.mass", inflow.name))?;
-        blocked(inflow, spacing, time, rate, mass)
-    });
-    let held = scene.gates.iter().filter_map(|gate| {
-        let of = |what: &str| values(format!("gate.{}.{what}", gate.name));
-        held(
-            &gate.name,
-            time,
-            of("opening")?,
-            of("actual_opening")?,
-            of("blocked")?,
+    let (table, series) = (session.component.variables(), &session.series);
+    let figures = |variable| series.column(variable).and_then(|column| column.figures);
+    let blocked = scene.inflows.iter().enumerate().filter_map(|(i, inflow)| {
+        let rate = figures(table.input(InputTarget::InflowRate(i)))?;
+        blocked(
+            inflow,
+            scene.numerics.spacing,
+            &rate,
+            &figures(table.inflow_mass(i))?,
         )
     });
+    let held = scene
+        .gates
+        .iter()
+        .zip(&series.gates)
+        .filter_map(|(gate, columns)| {
+            let (start, end) = series.span?;
+            let stood = series.columns[columns.blocked].figures?.over_time;
+            held(&gate.name, end - start, stood, columns.last_blocked?)
+        });
     fast(session)
         .into_iter()
         .chain(squeezed(session))
@@ -44,18 +44,11 @@ pub(super) fn notes(session: &Session) -> Vec<String> {
         .collect()
 }
 
-/// An inflow let in less than was wanted, by more than the rows that are always on their way. `rate` is what held over the
-/// step that ended at each time, `mass` what had come in by then.
-fn blocked(
-    inflow: &Inflow,
-    spacing: f64,
-    time: &[f64],
-    rate: &[f64],
-    mass: &[f64],
-) -> Option<String> {
-    let steps = time.windows(2).zip(rate.iter().skip(1));
-    let wanted: f64 = steps.map(|(t, rate)| rate * (t[1] - t[0])).sum();
-    let admitted = mass.last()? - mass.first()?;
+/// An inflow let in less than was wanted, by more than the rows that are always on their way. `rate` is what held over each
+/// step, `mass` what had come in by its end.
+fn blocked(inflow: &Inflow, spacing: f64, rate: &Figures, mass: &Figures) -> Option<String> {
+    let wanted = rate.over_time;
+    let admitted = mass.last - mass.first;
     // The face passes max_rate at this speed, a row each spacing of the way; a slanting row is heavier, if by less than 2.
     let speed = inflow.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
     let row = inflow.max_rate * spacing / speed;
@@ -71,26 +64,17 @@ fn blocked(
     })
 }
 
-/// A gate could not close as it was told to. All that is given holds over, or at the end of, the step that ended at each time.
-fn held(
-    name: &str,
-    time: &[f64],
-    wanted: &[f64],
-    opening: &[f64],
-    blocked: &[f64],
-) -> Option<String> {
-    let steps = time.windows(2).zip(blocked.iter().skip(1));
-    let stood: f64 = steps.map(|(t, blocked)| blocked * (t[1] - t[0])).sum();
-    let whole = time.last()? - time.first()?;
-    let last = blocked.iter().rposition(|blocked| *blocked > 0.0)?;
+/// A gate could not close as it was told to: it `stood` for so long of the `whole` run [s], at last when it was told to go to
+/// `wanted` and was at `opening`.
+fn held(name: &str, whole: f64, stood: f64, (wanted, opening): (f64, f64)) -> Option<String> {
     (stood > MUCH * whole).then(|| {
         format!(
             "note: gate.{name} was told to close to {} and was blocked for {} of {} s: material stood in its way, and it came\n  \
              to {}. See gate.{name}.blocked over time.",
-            short(wanted[last]),
+            short(wanted),
             short(stood),
             short(whole),
-            short(opening[last]),
+            short(opening),
         )
     })
 }
@@ -114,7 +98,7 @@ fn sound_speeds(scene: &Scene) -> String {
 
 /// The sound speed is too low for what flowed.
 fn fast(session: &Session) -> Option<String> {
-    let (_, (share, time)) = extremes(session, "validity.share_fast")?;
+    let (_, (share, time)) = extremes(session, session.component.variables().share_fast())?;
     (share > MUCH).then(|| {
         let time = (1e6 * time).round() / 1e6;
         format!(
@@ -130,7 +114,7 @@ fn fast(session: &Session) -> Option<String> {
 
 /// More was squeezed than what an impact squeezes for a moment.
 fn squeezed(session: &Session) -> Option<String> {
-    let (_, (share, time)) = extremes(session, "validity.share_squeezed")?;
+    let (_, (share, time)) = extremes(session, session.component.variables().share_squeezed())?;
     (share > MUCH).then(|| {
         let time = (1e6 * time).round() / 1e6;
         format!(
@@ -146,6 +130,7 @@ fn squeezed(session: &Session) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::series::GateColumns;
     use super::*;
 
     /// 10 kg/s at most, 1 kg a row.
@@ -162,8 +147,18 @@ mod tests {
         }
     }
 
+    /// What rows at these times come to.
+    fn figures(time: &[f64], values: &[f64]) -> Figures {
+        let mut figures = Figures::of(time[0], values[0]);
+        for (times, value) in time.windows(2).zip(&values[1..]) {
+            figures.add(times[1], times[1] - times[0], *value);
+        }
+        figures
+    }
+
     fn note(rate: &[f64], mass: &[f64]) -> Option<String> {
-        blocked(&inflow(), 0.01, &[0.0, 1.0, 3.0], rate, mass)
+        let of = |values| figures(&[0.0, 1.0, 3.0], values);
+        blocked(&inflow(), 0.01, &of(rate), &of(mass))
     }
 
     #[test]
@@ -177,14 +172,19 @@ mod tests {
     #[test]
     fn a_gate_that_was_held_for_long_is_told_with_what_it_was_told_to_do() {
         let time = [0.0, 1.0, 3.0, 4.0];
-        let note = |blocked: &[f64]| {
-            held(
-                "main",
-                &time,
-                &[1.0, 0.25, 0.25, 1.0],
-                &[1.0, 0.5, 0.4, 1.0],
-                blocked,
-            )
+        let (wanted, opening) = ([1.0, 0.25, 0.25, 1.0], [1.0, 0.5, 0.4, 1.0]);
+        let note = |blocked: &[f64; 4]| {
+            let mut gate = GateColumns {
+                opening: 0,
+                actual_opening: 1,
+                blocked: 2,
+                last_blocked: None,
+            };
+            for row in 0..4 {
+                gate.see(&[wanted[row], opening[row], blocked[row]]);
+            }
+            let stood = figures(&time, blocked).over_time;
+            held("main", 4.0, stood, gate.last_blocked?)
         };
         let told = note(&[0.0, 0.0, 1.0, 0.0]).unwrap();
         for part in [

@@ -6,8 +6,8 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use super::curve::{Curve, Point};
 use super::series::{Column, Series};
-use crate::component::ValueKind;
 
 const WIDTH: u32 = 1100;
 const PANEL: u32 = 210;
@@ -66,13 +66,7 @@ struct Panel<'a> {
 /// Real scalars of gauges and devices by unit, in order of first appearance.
 fn panels(columns: &[Column]) -> Vec<Panel<'_>> {
     let mut panels: Vec<Panel> = Vec::new();
-    let shown = columns.iter().filter(|c| {
-        let device = ["gauge.", "gate.", "inflow.", "outflow."];
-        c.kind == ValueKind::Real
-            && !c.is_element
-            && device.iter().any(|prefix| c.name.starts_with(prefix))
-    });
-    for column in shown {
+    for column in columns.iter().filter(|c| c.curve.is_some()) {
         let (unit, factor) = column.display_unit.unwrap_or((column.unit, 1.0));
         let open = panels
             .iter_mut()
@@ -91,13 +85,12 @@ fn panels(columns: &[Column]) -> Vec<Panel<'_>> {
 
 fn draw_panel(area: &Area, panel: &Panel, series: &Series) -> Result<(), Failed> {
     let (plot, legend) = area.split_horizontally(WIDTH - LEGEND);
-    let start = series.time.first().copied().unwrap_or(0.0);
-    let end = series.time.last().copied().unwrap_or(1.0);
+    let (start, end) = series.span.unwrap_or((0.0, 1.0));
     let mut chart = ChartBuilder::on(&plot)
         .margin(8)
         .x_label_area_size(38)
         .y_label_area_size(84)
-        .build_cartesian_2d(start..end.max(start + 1e-9), limits(panel, series))?;
+        .build_cartesian_2d(start..end.max(start + 1e-9), limits(panel))?;
     let y_title = match panel.unit {
         "1" => "share [1]".to_owned(),
         unit => format!("[{unit}]"),
@@ -116,7 +109,7 @@ fn draw_panel(area: &Area, panel: &Panel, series: &Series) -> Result<(), Failed>
         .draw()?;
     for (index, column) in panel.curves.iter().enumerate() {
         let style = COLOURS[index % MOST_CURVES].stroke_width(if column.is_input { 1 } else { 2 });
-        for piece in pieces(column, panel.factor, series) {
+        for piece in pieces(column, panel.factor) {
             chart.draw_series(LineSeries::new(thinned(piece, end - start), style))?;
         }
         let y = 22 + 22 * i32::try_from(index)?;
@@ -130,10 +123,10 @@ fn draw_panel(area: &Area, panel: &Panel, series: &Series) -> Result<(), Failed>
 }
 
 /// Smallest and largest valid value of the panel with a margin, never an empty range.
-fn limits(panel: &Panel, series: &Series) -> std::ops::Range<f64> {
+fn limits(panel: &Panel) -> std::ops::Range<f64> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for column in &panel.curves {
-        for (_, y) in pieces(column, panel.factor, series).into_iter().flatten() {
+        for (_, y) in pieces(column, panel.factor).into_iter().flatten() {
             low = low.min(y);
             high = high.max(y);
         }
@@ -148,37 +141,26 @@ fn limits(panel: &Panel, series: &Series) -> std::ops::Range<f64> {
     low - margin..high + margin
 }
 
-/// The curve as unbroken pieces of valid samples; inputs hold over the step that ends at their sample.
-fn pieces(column: &Column, factor: f64, series: &Series) -> Vec<Vec<(f64, f64)>> {
-    let gauge = column.name.rsplit_once('.').map_or("", |(gauge, _)| gauge);
-    let flag = format!("{gauge}.validity");
-    let validity = series.columns.iter().find(|c| c.name == flag);
+/// The curve as unbroken pieces of valid samples.
+fn pieces(column: &Column, factor: f64) -> Vec<Vec<Point>> {
     let mut pieces = vec![Vec::new()];
-    let mut before = series.time.first().copied().unwrap_or(0.0);
-    for (row, (&time, &value)) in series.time.iter().zip(&column.values).enumerate() {
-        let valid = validity.is_none_or(|v| v.values[row] == 0.0) && value.is_finite();
-        match (valid, pieces.last_mut()) {
-            (true, Some(piece)) => {
-                if column.is_input {
-                    piece.push((before, value * factor));
-                }
-                piece.push((time, value * factor));
-            }
+    for point in column.curve.iter().flat_map(Curve::points) {
+        match (point, pieces.last_mut()) {
+            (Some((time, value)), Some(piece)) => piece.push((time, value * factor)),
             _ => pieces.push(Vec::new()),
         }
-        before = time;
     }
     pieces.retain(|piece| !piece.is_empty());
     pieces
 }
 
 /// A long piece of a run of this length [s], with first, last, least and largest sample of every pixel: it looks the same.
-fn thinned(piece: Vec<(f64, f64)>, length: f64) -> Vec<(f64, f64)> {
+fn thinned(piece: Vec<Point>, length: f64) -> Vec<Point> {
     let pixels = f64::from(WIDTH - LEGEND);
     if piece.len() < 4 * (WIDTH - LEGEND) as usize {
         return piece;
     }
-    let pixel = |point: &(f64, f64)| (point.0 / length * pixels).floor();
+    let pixel = |point: &Point| (point.0 / length * pixels).floor();
     let mut kept = Vec::new();
     for same in piece.chunk_by(|a, b| pixel(a) == pixel(b)) {
         let extreme = |order: fn(&f64, &f64) -> bool| {

@@ -1,15 +1,21 @@
-//! The run's scalars over time: one row a communication point, in memory for the picture and in `gauges.csv`.
+//! The run's scalars over time: one row a communication point in `gauges.csv`, and in memory, which does not grow with the run,
+//! what the summary says of all rows and what the picture shows of them.
 //!
-//! Numbers are written as the shortest decimals that read back to the same bits. A resumed run keeps the rows
-//! up to its starting time and goes on below them.
+//! Numbers are written as the shortest decimals that read back to the same bits. A resumed run keeps the rows up to its
+//! starting time and goes on below them.
 
 use std::fs::File;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::curve::Curve;
+use super::table::{EarlierRows, Patient};
 use crate::cli::CliError;
-use crate::component::{Causality, Component, ValueKind, ValueReference};
+use crate::component::{Causality, Component, ValueKind, ValueReference, VariableTable};
+use crate::scene::InputTarget;
+
+/// Bytes of kept rows that are written at once.
+const AT_ONCE: usize = 1 << 20;
 
 /// One scalar variable of the run.
 #[derive(Clone, Debug)]
@@ -26,57 +32,89 @@ pub(super) struct Column {
     pub(super) is_input: bool,
     /// Whether it is one element of an array (a profile).
     pub(super) is_element: bool,
-    /// One value a row, SI.
-    pub(super) values: Vec<f64>,
+    /// What all rows say of it, SI; none before the first.
+    pub(super) figures: Option<Figures>,
+    /// What the picture shows of it, SI; none of what is left to the table.
+    pub(super) curve: Option<Curve>,
 }
 
-/// All rows so far, and the file they go to.
+impl Column {
+    /// Whether it is of a gauge or a device, and no element of an array.
+    pub(super) fn is_of_device(&self) -> bool {
+        let device = ["gauge.", "gate.", "inflow.", "outflow."];
+        !self.is_element && device.iter().any(|prefix| self.name.starts_with(prefix))
+    }
+}
+
+/// What all rows say of a variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Figures {
+    pub(super) first: f64,
+    pub(super) last: f64,
+    /// Smallest value with the first time that it was there.
+    pub(super) low: (f64, f64),
+    /// Largest value, alike.
+    pub(super) high: (f64, f64),
+    /// Sum of the values, each times the step that ended at it.
+    pub(super) over_time: f64,
+}
+
+impl Figures {
+    pub(super) fn of(time: f64, value: f64) -> Self {
+        Self {
+            first: value,
+            last: value,
+            low: (value, time),
+            high: (value, time),
+            over_time: 0.0,
+        }
+    }
+
+    /// Adds a row that a step of this length [s] ended at.
+    pub(super) fn add(&mut self, time: f64, step: f64, value: f64) {
+        self.last = value;
+        if value.total_cmp(&self.low.0).is_lt() {
+            self.low = (value, time);
+        }
+        if value.total_cmp(&self.high.0).is_gt() {
+            self.high = (value, time);
+        }
+        self.over_time += value * step;
+    }
+}
+
+/// The columns of a gate, and what it was told and had in the last row in which material kept it from moving.
+#[derive(Clone, Debug)]
+pub(super) struct GateColumns {
+    pub(super) opening: usize,
+    pub(super) actual_opening: usize,
+    pub(super) blocked: usize,
+    pub(super) last_blocked: Option<(f64, f64)>,
+}
+
+impl GateColumns {
+    pub(super) fn see(&mut self, values: &[f64]) {
+        if values[self.blocked] > 0.0 {
+            self.last_blocked = Some((values[self.opening], values[self.actual_opening]));
+        }
+    }
+}
+
+/// What is known of the rows so far, and the file they go to.
 pub(super) struct Series {
     references: Vec<ValueReference>,
-    /// Time of each row [s].
-    pub(super) time: Vec<f64>,
+    /// Times of the first and the last row [s].
+    pub(super) span: Option<(f64, f64)>,
     /// The scalars, in the order of the variables table.
     pub(super) columns: Vec<Column>,
+    /// In the order of the scene.
+    pub(super) gates: Vec<GateColumns>,
+    /// For each column the one that says whether it is a measurement.
+    validity: Vec<Option<usize>>,
     file: Patient,
     path: PathBuf,
     flushed: Instant,
     warned: bool,
-}
-
-/// A file that keeps what the disk does not take, and tries again.
-struct Patient {
-    sink: Box<dyn Write>,
-    /// Bytes that are not in the file yet.
-    waiting: Vec<u8>,
-}
-
-impl Patient {
-    fn new(sink: impl Write + 'static) -> Self {
-        Self {
-            sink: Box::new(sink),
-            waiting: Vec::new(),
-        }
-    }
-
-    fn push(&mut self, line: &str) {
-        self.waiting.extend_from_slice(line.as_bytes());
-        self.waiting.push(b'\n');
-    }
-
-    /// Writes what waits, as far as there is room; a line that was cut is gone on with.
-    fn flush(&mut self) -> std::io::Result<()> {
-        let (mut written, mut result) = (0, Ok(()));
-        while written < self.waiting.len() && result.is_ok() {
-            match self.sink.write(&self.waiting[written..]) {
-                Ok(0) => result = Err(std::io::ErrorKind::WriteZero.into()),
-                Ok(n) => written += n,
-                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
-                Err(error) => result = Err(error),
-            }
-        }
-        self.waiting.drain(..written);
-        result
-    }
 }
 
 impl Series {
@@ -89,30 +127,46 @@ impl Series {
         component: &Component,
         keep_until: Option<f64>,
     ) -> Result<Self, CliError> {
-        let (references, columns) = scalars(component);
-        let kept = match keep_until {
-            Some(time) if path.exists() => read_rows(path, &columns, time)?,
-            _ => Vec::new(),
+        let (references, columns) = scalars(component.variables());
+        let header = header(&columns);
+        let earlier = match keep_until {
+            Some(until) if path.exists() => Some((EarlierRows::open(path, &header)?, until)),
+            _ => None,
         };
         let fresh = path.with_extension("csv.part");
         let file = File::create(&fresh).map_err(|e| cannot_write(&fresh, e))?;
         let mut series = Self {
+            span: None,
+            gates: gates(component, &references),
+            validity: columns.iter().map(|c| flag_of(c, &columns)).collect(),
             references,
-            time: Vec::new(),
             columns,
             file: Patient::new(file),
             path: path.to_path_buf(),
             flushed: Instant::now(),
             warned: false,
         };
-        series.file.push(&header(&series.columns));
-        for row in &kept {
-            series.push(row[0], &row[1..]);
+        series.file.push(&header);
+        let kept = earlier.map_or(Ok(()), |(rows, until)| series.keep(rows, until));
+        if let Err(error) = kept.and_then(|()| series.flush()) {
+            // The table as it was is still there; half a new one is of no use, and may be in the way of a full disk.
+            let _ = std::fs::remove_file(&fresh);
+            return Err(error);
         }
-        series.flush()?;
         // The open file follows its new name: a crash from here on leaves a complete table.
         std::fs::rename(&fresh, path).map_err(|e| cannot_write(path, e))?;
         Ok(series)
+    }
+
+    /// Takes over the rows up to `until` [s].
+    fn keep(&mut self, mut rows: EarlierRows, until: f64) -> Result<(), CliError> {
+        while let Some(row) = rows.next()?.filter(|row| row[0] <= until) {
+            self.push(row[0], &row[1..]);
+            if self.file.waiting() > AT_ONCE {
+                self.flush()?;
+            }
+        }
+        Ok(())
     }
 
     /// Adds a row with the component's values now. Rows that cannot be written (the disk is full) wait in memory and are
@@ -143,38 +197,79 @@ impl Series {
         self.file.flush().map_err(|e| cannot_write(&self.path, e))
     }
 
+    /// The column of a scalar; none of an array.
+    pub(super) fn column(&self, reference: ValueReference) -> Option<&Column> {
+        let place = place(&self.references, reference)?;
+        Some(&self.columns[place])
+    }
+
     fn push(&mut self, time: f64, values: &[f64]) {
-        self.time.push(time);
+        let (first, before) = self.span.unwrap_or((time, time));
+        self.span = Some((first, time));
         let mut line = format!("{time:?}");
-        for (column, &value) in self.columns.iter_mut().zip(values) {
-            column.values.push(value);
+        for ((column, &value), flag) in self.columns.iter_mut().zip(values).zip(&self.validity) {
             line.push_str(&format!(",{value:?}"));
+            match &mut column.figures {
+                Some(figures) => figures.add(time, time - before, value),
+                none => *none = Some(Figures::of(time, value)),
+            }
+            if let Some(curve) = &mut column.curve {
+                let since = if column.is_input { before } else { time };
+                let valid = flag.is_none_or(|flag| values[flag] == 0.0) && value.is_finite();
+                curve.add(since, time, valid.then_some(value));
+            }
         }
+        self.gates.iter_mut().for_each(|gate| gate.see(values));
         self.file.push(&line);
     }
 }
 
 /// Inputs and outputs with one value each; elements of arrays are among them, arrays as a whole are not.
-fn scalars(component: &Component) -> (Vec<ValueReference>, Vec<Column>) {
-    component
-        .variables()
-        .rows()
-        .iter()
-        .filter(|v| matches!(v.causality, Causality::Input | Causality::Output))
+fn scalars(table: &VariableTable) -> (Vec<ValueReference>, Vec<Column>) {
+    let rows = table.rows().iter();
+    rows.filter(|v| matches!(v.causality, Causality::Input | Causality::Output))
         .filter(|v| v.shape.is_empty())
         .map(|v| {
-            let column = Column {
+            let mut column = Column {
                 name: v.name.clone(),
                 unit: v.unit,
                 display_unit: v.display_unit,
                 kind: v.kind,
                 is_input: v.causality == Causality::Input,
                 is_element: v.element_of.is_some(),
-                values: Vec::new(),
+                figures: None,
+                curve: None,
             };
+            if column.is_of_device() && column.kind == ValueKind::Real {
+                column.curve = Some(Curve::new());
+            }
             (v.reference, column)
         })
         .unzip()
+}
+
+/// Columns of the gates of a scene.
+fn gates(component: &Component, references: &[ValueReference]) -> Vec<GateColumns> {
+    let table = component.variables();
+    let place = |reference| place(references, reference).expect("scalars of devices have columns");
+    let columns = |gate: usize| GateColumns {
+        opening: place(table.input(InputTarget::GateOpening(gate))),
+        actual_opening: place(table.actual_opening(gate)),
+        blocked: place(table.gate_blocked(gate)),
+        last_blocked: None,
+    };
+    (0..component.scene().gates.len()).map(columns).collect()
+}
+
+fn place(references: &[ValueReference], reference: ValueReference) -> Option<usize> {
+    references.iter().position(|other| *other == reference)
+}
+
+/// The column that says whether a gauge's reading is a measurement.
+fn flag_of(column: &Column, columns: &[Column]) -> Option<usize> {
+    let (gauge, _) = column.name.rsplit_once('.')?;
+    let flag = format!("{gauge}.validity");
+    columns.iter().position(|other| other.name == flag)
 }
 
 fn header(columns: &[Column]) -> String {
@@ -184,47 +279,6 @@ fn header(columns: &[Column]) -> String {
         header.push_str(&column.name);
     }
     header
-}
-
-/// Rows of an earlier part up to `until`, each with its time first.
-fn read_rows(path: &Path, columns: &[Column], until: f64) -> Result<Vec<Vec<f64>>, CliError> {
-    let text = std::fs::read_to_string(path).map_err(|source| CliError::File {
-        action: "read",
-        path: path.to_path_buf(),
-        source,
-        remedy: "resume into another folder with --out",
-    })?;
-    let wrong = |problem: String| CliError::Content {
-        path: path.to_path_buf(),
-        problem,
-        remedy: "resume into another folder with --out",
-    };
-    let mut lines = text.lines();
-    if lines.next() != Some(&header(columns)) {
-        return Err(wrong("its columns are not those of this case".into()));
-    }
-    let mut rows = Vec::new();
-    for (number, line) in lines.enumerate() {
-        let row: Vec<f64> = line
-            .split(',')
-            .map_while(|cell| cell.parse().ok())
-            .collect();
-        if row.len() != columns.len() + 1 {
-            // Only the last line may be cut short (by a crash); whatever it was is computed again.
-            if text.ends_with('\n') || number + 2 < text.lines().count() {
-                return Err(wrong(format!(
-                    "line {} is not a row of numbers",
-                    number + 2
-                )));
-            }
-            break;
-        }
-        if row[0] > until {
-            break;
-        }
-        rows.push(row);
-    }
-    Ok(rows)
 }
 
 fn cannot_write(path: &Path, source: std::io::Error) -> CliError {
@@ -239,41 +293,79 @@ fn cannot_write(path: &Path, source: std::io::Error) -> CliError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::{Arc, Mutex};
 
-    /// Takes so many bytes and no more.
-    #[derive(Clone, Default)]
-    struct Disk(Arc<Mutex<(Vec<u8>, usize)>>);
+    fn silo() -> Component {
+        let text = include_str!("../../../tests/scenes/small_silo.toml");
+        let scene = crate::scene::parse("small_silo.toml", text).unwrap();
+        Component::new(&scene).unwrap()
+    }
 
-    impl Write for Disk {
-        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-            let (stored, room) = &mut *self.0.lock().unwrap();
-            let n = bytes.len().min(*room - stored.len());
-            if n == 0 && !bytes.is_empty() {
-                return Err(std::io::ErrorKind::StorageFull.into());
-            }
-            stored.extend_from_slice(&bytes[..n]);
-            Ok(n)
+    /// Rows that no two are alike of, a gate that is blocked now and then among them.
+    fn push(series: &mut Series, rows: std::ops::Range<u32>) {
+        let width = series.columns.len();
+        let blocked = series.gates[0].blocked;
+        for n in rows {
+            let row = 0..width;
+            let mut values: Vec<f64> = row.map(|k| (f64::from(n) + 0.1 * k as f64).sin()).collect();
+            values[blocked] = f64::from(u8::from(n % 7 == 3));
+            series.push(1e-3 * f64::from(n), &values);
         }
+        series.flush().unwrap();
+    }
 
-        fn flush(&mut self) -> std::io::Result<()> {
-            Ok(())
-        }
+    /// Everything but the time at which it was written last.
+    fn known(series: &Series) -> (Option<(f64, f64)>, String) {
+        let columns: Vec<_> = series.columns.iter().collect();
+        let gates = &series.gates;
+        (series.span, format!("{columns:?} {gates:?}"))
     }
 
     #[test]
-    fn what_a_full_disk_does_not_take_is_written_when_there_is_room() {
-        let disk = Disk::default();
-        disk.0.lock().unwrap().1 = 7;
-        let mut file = Patient::new(disk.clone());
-        file.push("0.0,1.5");
-        assert!(file.flush().is_err());
-        file.push("0.5,2.5");
-        assert!(file.flush().is_err());
-        assert_eq!(disk.0.lock().unwrap().0, b"0.0,1.5");
-        disk.0.lock().unwrap().1 = 100;
-        file.flush().unwrap();
-        file.flush().unwrap();
-        assert_eq!(disk.0.lock().unwrap().0, b"0.0,1.5\n0.5,2.5\n");
+    fn a_resumed_run_knows_and_writes_what_an_unbroken_one_does() {
+        let (component, folder) = (silo(), temp_dir::TempDir::new().unwrap());
+        let (one, two) = (folder.path().join("one.csv"), folder.path().join("two.csv"));
+        let mut whole = Series::open(&one, &component, None).unwrap();
+        push(&mut whole, 0..9000);
+        let mut first = Series::open(&two, &component, None).unwrap();
+        push(&mut first, 0..7000);
+        drop(first);
+        // From a checkpoint before the last row.
+        let mut second = Series::open(&two, &component, Some(5.0)).unwrap();
+        assert_eq!(second.span, Some((0.0, 5.0)));
+        push(&mut second, 5001..9000);
+        let read = |path: &Path| std::fs::read_to_string(path).unwrap();
+        assert_eq!(read(&one), read(&two));
+        assert_eq!(read(&one).lines().count(), 9001);
+        assert!(known(&whole) == known(&second));
+    }
+
+    #[test]
+    fn figures_are_of_all_rows() {
+        let mut figures = Figures::of(0.0, 2.0);
+        for (time, step, value) in [(1.0, 1.0, 5.0), (3.0, 2.0, -1.0), (4.0, 1.0, 5.0)] {
+            figures.add(time, step, value);
+        }
+        let wanted = Figures {
+            first: 2.0,
+            last: 5.0,
+            low: (-1.0, 3.0),
+            high: (5.0, 1.0),
+            over_time: 8.0,
+        };
+        assert_eq!(figures, wanted);
+    }
+
+    #[test]
+    fn an_earlier_table_of_another_case_stays_as_it_is() {
+        let (component, folder) = (silo(), temp_dir::TempDir::new().unwrap());
+        let path = folder.path().join("gauges.csv");
+        let header = header(&scalars(component.variables()).1);
+        for text in ["time,other\n".to_owned(), format!("{header}\n1,2\n3,4\n")] {
+            std::fs::write(&path, &text).unwrap();
+            let refused = Series::open(&path, &component, Some(5.0)).map(drop);
+            assert!(matches!(refused, Err(CliError::Content { .. })));
+            assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        }
     }
 }

@@ -144,7 +144,7 @@ impl Session {
             component.initialize(0.0, None)?;
             log.initialized(&component, 0.0)?;
         }
-        if series.time.last() != Some(&from) {
+        if series.span.is_none_or(|(_, last)| last != from) {
             series.sample(&component)?;
         }
         let mut session = Self {

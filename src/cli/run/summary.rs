@@ -6,7 +6,7 @@ use super::folder::MADE_BY;
 use super::notes::notes;
 use super::session::Session;
 use crate::cli::CliError;
-use crate::component::{Causality, ValueKind};
+use crate::component::{Causality, ValueKind, ValueReference};
 use crate::record::number;
 use crate::solver::StepBound;
 
@@ -108,7 +108,7 @@ fn variables(session: &Session) -> Result<Map<String, Value>, CliError> {
         } else {
             entry["final"] = values.iter().map(|&v| number(v)).collect();
         }
-        if let Some(extremes) = extremes(session, &row.name) {
+        if let Some(extremes) = extremes(session, row.reference) {
             let ((low, low_at), (high, high_at)) = extremes;
             entry["min"] = number(low);
             entry["min_at"] = number(low_at);
@@ -121,18 +121,12 @@ fn variables(session: &Session) -> Result<Map<String, Value>, CliError> {
 }
 
 /// Smallest and largest sample of a scalar with their times [s].
-pub(super) fn extremes(session: &Session, name: &str) -> Option<((f64, f64), (f64, f64))> {
-    let column = session.series.columns.iter().find(|c| c.name == name)?;
-    let samples = || {
-        column
-            .values
-            .iter()
-            .copied()
-            .zip(session.series.time.iter().copied())
-    };
-    let low = samples().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let high = samples().max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))?;
-    Some((low, high))
+pub(super) fn extremes(
+    session: &Session,
+    variable: ValueReference,
+) -> Option<((f64, f64), (f64, f64))> {
+    let figures = session.series.column(variable)?.figures?;
+    Some((figures.low, figures.high))
 }
 
 /// The table printed at the end of a run.
@@ -179,25 +173,17 @@ pub(super) fn table(session: &Session, status: &str) -> String {
 
 /// Scalars of gauges and devices: final value and extremes.
 fn variable_rows(session: &Session) -> Vec<String> {
-    let shown: Vec<_> = session
-        .series
-        .columns
-        .iter()
-        .filter(|c| {
-            let device = ["gauge.", "gate.", "inflow.", "outflow."];
-            !c.is_element && device.iter().any(|prefix| c.name.starts_with(prefix))
-        })
-        .collect();
+    let columns = session.series.columns.iter();
+    let shown: Vec<_> = columns.filter(|c| c.is_of_device()).collect();
     let width = shown.iter().map(|c| c.name.len()).max().unwrap_or(0).max(8);
     let mut rows = vec![format!(
         "  {:width$}  {:>12} {:>12} {:>12}  unit",
         "variable", "final", "smallest", "largest"
     )];
     for column in shown {
-        let Some(((low, _), (high, _))) = extremes(session, &column.name) else {
+        let Some(figures) = column.figures else {
             continue;
         };
-        let last = column.values.last().copied().unwrap_or(f64::NAN);
         let unit = match column.kind {
             ValueKind::Real => column.unit,
             ValueKind::Integer | ValueKind::Boolean | ValueKind::Text => "",
@@ -205,9 +191,9 @@ fn variable_rows(session: &Session) -> Vec<String> {
         rows.push(format!(
             "  {:width$}  {:>12} {:>12} {:>12}  {unit}",
             column.name,
-            short(last),
-            short(low),
-            short(high)
+            short(figures.last),
+            short(figures.low.0),
+            short(figures.high.0)
         ));
     }
     rows
