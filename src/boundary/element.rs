@@ -13,6 +13,7 @@
 
 use std::f64::consts::PI;
 
+use super::points::reach;
 use crate::kernel::WendlandC2;
 use crate::math::{Vector, dot, norm, scale, sub};
 
@@ -200,14 +201,14 @@ pub fn plane_elements<const D: usize>(
         std::array::from_fn(|k| x[k] - off * normal[k])
     };
     let start = onto(lower);
-    let half = (norm(&sub(upper, lower)) / spacing).ceil() as i64 + 1;
-    let across = if D == 2 { 0..1 } else { -half..half };
+    let range = |tangent: &Vector<D>| reach(tangent, &start, (lower, upper), spacing);
+    let across = if D == 2 { 0..1 } else { range(&along[1]) };
     let inside = |x: &Vector<D>| {
         // Along its own axis a plane may lie outside the domain.
         (0..D).all(|k| normal[k].abs() > 1.0 - 1e-12 || (x[k] > lower[k] && x[k] < upper[k]))
     };
     let mut centres = Vec::new();
-    for a in -half..half {
+    for a in range(&along[0]) {
         for b in across.clone() {
             let x: Vector<D> = std::array::from_fn(|k| {
                 start[k]

@@ -1,5 +1,7 @@
 //! Where wall points lie: rows behind polylines, planes and in boxes.
 
+use std::ops::Range;
+
 use super::tips::Tip;
 use crate::math::{Vector, add, dot, norm, scale, sub};
 
@@ -187,8 +189,6 @@ pub fn plane_points<const D: usize>(
 ) -> Vec<Vector<D>> {
     let margin = ROWS as f64 * spacing;
     let tangents = plane_tangents(normal);
-    let reach = (norm(&sub(upper, lower)) + 2.0 * margin) / spacing;
-    let half = reach.ceil() as i64;
     let start = {
         // The lattice starts at the domain's lower corner, moved into the plane.
         let d = sub(lower, point);
@@ -201,12 +201,10 @@ pub fn plane_points<const D: usize>(
         })
     };
     let mut points = Vec::new();
-    let range = |axis_count: usize| {
-        if axis_count < tangents.len() {
-            -half..half
-        } else {
-            0..1
-        }
+    let (outer_lower, outer_upper) = (lower.map(|x| x - margin), upper.map(|x| x + margin));
+    let range = |axis_count: usize| match tangents.get(axis_count) {
+        Some(tangent) => reach(tangent, &start, (&outer_lower, &outer_upper), spacing),
+        None => 0..1,
     };
     for row in 0..ROWS {
         let base = sub(&start, &scale((row as f64 + 0.5) * spacing, normal));
@@ -225,6 +223,23 @@ pub fn plane_points<const D: usize>(
         }
     }
     points
+}
+
+/// Numbers n of the places start + (n + 1/2) spacing tangent that may lie in the box, and a few more. In a domain that is long along
+/// one axis planes across it have few.
+pub(super) fn reach<const D: usize>(
+    tangent: &Vector<D>,
+    start: &Vector<D>,
+    (lower, upper): (&Vector<D>, &Vector<D>),
+    spacing: f64,
+) -> Range<i64> {
+    let (mut least, mut most) = (0.0, 0.0);
+    for k in 0..D {
+        let ends = [lower[k], upper[k]].map(|x| (x - start[k]) * tangent[k] / spacing);
+        least += ends[0].min(ends[1]);
+        most += ends[0].max(ends[1]);
+    }
+    least.floor() as i64 - 2..most.ceil() as i64 + 2
 }
 
 /// Unit vectors along a plane with this unit normal, at right angles: the other axes for an axis-aligned plane (so that its
@@ -352,5 +367,21 @@ mod tests {
         );
         assert!(p.iter().all(|x| x[2] < 0.0 && x[2] > -1.0));
         assert_eq!(p.len(), 4 * 12 * 12);
+    }
+
+    /// A floor of 40 by 40 points under a sky of a million kilometres.
+    #[test]
+    fn planes_across_a_long_domain_have_the_points_of_a_short_one() {
+        let floor = |normal: [f64; 3], height: f64| {
+            let upper = [1.0, 1.0, height];
+            plane_points(&[0.0; 3], &normal, &[0.0; 3], &upper, &[false; 3], 0.025)
+        };
+        let (low, high) = (floor([0.0, 0.0, 1.0], 1.0), floor([0.0, 0.0, 1.0], 1e9));
+        assert_eq!(low.len(), 4 * 48 * 48);
+        assert_eq!(low, high);
+        // A slope meets the domain in a patch, wherever its sides are.
+        let slope = floor([0.6, 0.0, 0.8], 1.0);
+        assert_eq!(slope.len() % 4, 0);
+        assert!(slope.len() > 1000, "{}", slope.len());
     }
 }

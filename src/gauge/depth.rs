@@ -138,6 +138,8 @@ impl<const D: usize> DepthLine<D> {
         let height = |k| self.height(view, k);
         let block = ((support / (STEP * view.spacing)) as usize).max(1);
         let mut top = self.count(view) + 1;
+        // Whole blocks, so that those below are the same in any domain.
+        top -= block * (top.saturating_sub(self.places_below_top(view)) / block);
         while top > 0 {
             let bottom = top.saturating_sub(block);
             let middle = 0.5 * (height(bottom) + height(top));
@@ -153,6 +155,27 @@ impl<const D: usize> DepthLine<D> {
             top = bottom;
         }
         None
+    }
+
+    /// Places from the foot up to where no material reaches any more: a line may be much longer.
+    fn places_below_top(&self, view: &View<D>) -> usize {
+        let margin = 2.0 * view.kernel.support();
+        let height = |a: usize| {
+            let (lower, upper) = view.cells.ends(a)?;
+            // Rings have images on the other side of the axis.
+            if self.up[a] == 0.0 || (a == 0 && view.geometry.is_axisymmetric()) {
+                return None;
+            }
+            let end = if self.up[a] > 0.0 {
+                upper + margin
+            } else {
+                lower - margin
+            };
+            Some((end - self.foot[a]) / self.up[a])
+        };
+        let top = (0..D).filter_map(height).fold(self.length, f64::min);
+        // `as` saturates.
+        (top / (STEP * view.spacing)).ceil() as usize + 1
     }
 
     /// The sum S at a height above the foot.

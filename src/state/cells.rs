@@ -87,6 +87,12 @@ impl<const D: usize> CellGrid<D> {
         self.entries.is_empty()
     }
 
+    /// How far the points reach along an axis, but for rounding: its lower and upper end [m]; `None` on periodic axes.
+    #[must_use]
+    pub fn ends(&self, axis: usize) -> Option<(f64, f64)> {
+        self.axes[axis].ends()
+    }
+
     /// Calls `visit` with index, position (on periodic axes the image nearest to `centre`) [m] and distance [m] of
     /// every point closer to `centre` than `radius` [m], in an order that depends on the points alone.
     pub fn for_each_within(

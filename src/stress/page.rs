@@ -213,7 +213,7 @@ fn faults() -> String {
         ),
         (
             "more particles than memory",
-            "more than 5e7 (or 1e9 cells) are refused before any memory is asked for: key, line, how many particles, use a coarser spacing; fewer, where \
+            "more than 5e7 (or 1e9 cells of the neighbour grid where the domain repeats) are refused before any memory is asked for: key, line, how many particles, use a coarser spacing; fewer, where \
              what they take (about 5 kB each in the plane, 12 kB in space) is not to be had, before the first of them is made",
         ),
         (

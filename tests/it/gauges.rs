@@ -272,3 +272,20 @@ fn a_front_follows_the_face_of_a_wall_that_moves() {
     // Pushed for 0.1 s.
     assert!((front - 0.29).abs() < 2e-4, "{front} m for 0.29 m");
 }
+
+/// What is in a domain is all that it costs: neither grids nor lines of gauges reach further.
+#[test]
+fn a_domain_may_be_far_larger_than_what_is_in_it() {
+    let text = include_str!("../scenes/small_silo.toml");
+    let run = |text: &str| {
+        let mut silo = Component::new(&scene::parse("small_silo", text).unwrap()).unwrap();
+        silo.initialize(0.0, None).unwrap();
+        step(&mut silo, 3);
+        let depths = ["gauge.level.depth", "gauge.surface.depth[2]"].map(|name| value(&silo, name));
+        (silo.state_hash(), depths)
+    };
+    let wide = text.replacen("[\"-3 cm\", \"-12 cm\"]", "[\"-1e6 km\", \"-1e6 km\"]", 1);
+    let wide = wide.replacen("[\"11 cm\", \"15 cm\"]", "[\"1e6 km\", \"1e6 km\"]", 1);
+    assert_eq!(wide.matches("1e6 km").count(), 4);
+    assert_eq!(run(&wide), run(text));
+}

@@ -2,13 +2,18 @@
 
 use super::Lift;
 use crate::scene::raw::{RawNumerics, RotationWord, YieldWord};
-use crate::scene::types::NamedMaterial;
+use crate::scene::types::{Dimension, NamedMaterial};
 use crate::solver::{Numerics, Rotation, Scheme, YieldForm};
 
 /// Most particles of a scene: memory of a large machine.
 pub(crate) const MOST_PARTICLES: f64 = 50e6;
-/// Most cells of the neighbour grid, occupied or not.
+/// Most cells of the neighbour grid: those of particles and of walls take some 12 GB then.
 const MOST_CELLS: f64 = 1e9;
+/// Edge of such a cell: a kernel's support and the skin of neighbour lists, over the smoothing length [1].
+const CELL: f64 = 2.3;
+/// Largest radius of rings over the particle spacing. Masses are whole multiples of one that a ring there has 2^24 of (so that their
+/// sum is exact): the innermost, half a spacing from the axis, is right to 0.6 %.
+const LARGEST_RADIUS: f64 = 1e5;
 /// Time scale of the gate on density diffusion, over c0/g [1].
 const GATE: f64 = 0.3;
 
@@ -126,18 +131,14 @@ impl Lift<'_> {
         times * self.time_scale(sound_speed)
     }
 
-    /// Neither more particles nor more grid cells than a machine holds.
+    /// No more particles than a machine holds.
     fn check_particle_count(&mut self, raw: &RawNumerics) {
-        let (Some(spacing), Some(domain)) = (&raw.spacing, &self.domain) else {
+        let Some(spacing) = &raw.spacing else {
             return;
         };
         let axes = i32::try_from(self.axes()).unwrap_or(3);
         let volume: f64 = self.filled.iter().map(|f| f.region.measure()).sum();
         let particles = volume / spacing.value.0.powi(axes);
-        let extent: f64 = (0..self.axes())
-            .map(|a| domain.upper[a] - domain.lower[a])
-            .product();
-        let cells = extent / (3.2 * spacing.value.0).powi(axes);
         if particles > MOST_PARTICLES {
             self.problems.report(
                 &spacing.place,
@@ -148,17 +149,64 @@ impl Lift<'_> {
                 format!("at most {MOST_PARTICLES:.0e} particles"),
                 "use a coarser spacing or smaller bodies",
             );
-        } else if cells > MOST_CELLS {
-            self.problems.report(
-                &spacing.place,
+        } else {
+            self.check_extent(raw, particles);
+        }
+    }
+
+    /// A domain may be as large as it likes but for two things. The neighbour grid covers the particles, with no more cells than they
+    /// deserve, but an axis that repeats it covers whole; and masses of rings are measured by those at the domain's rim.
+    fn check_extent(&mut self, raw: &RawNumerics, particles: f64) {
+        let (Some(spacing), Some(cells)) = (&raw.spacing, self.cells(raw, particles)) else {
+            return;
+        };
+        let dp = spacing.value.0;
+        let mut report = |found: String, allowed: String, remedy: &str| {
+            let found = format!("a spacing of {dp} m in this domain, {found}");
+            self.problems.report(&spacing.place, found, allowed, remedy);
+        };
+        if cells > MOST_CELLS {
+            report(
+                format!("{cells:.3e} cells"),
                 format!(
-                    "a spacing of {} m in this domain, {cells:.3e} cells",
-                    spacing.value.0
+                    "at most {MOST_CELLS:.0e} cells of the neighbour grid, which covers axes that repeat whole"
                 ),
-                format!("at most {MOST_CELLS:.0e} cells of the neighbour grid"),
-                "use a coarser spacing or a smaller domain",
+                "use a coarser spacing, or a smaller domain along the axes that repeat",
             );
         }
+        let rim = self.domain.as_ref().map_or(0.0, |d| d.upper[0]) / dp;
+        if self.dimension == Dimension::Axisymmetric && rim > LARGEST_RADIUS {
+            report(
+                format!("{rim:.3e} spacings to its rim"),
+                format!(
+                    "at most {LARGEST_RADIUS:.0e} spacings from the axis to the rim: masses of rings are exact to what one there weighs"
+                ),
+                "use a coarser spacing, or a smaller domain across the axis",
+            );
+        }
+    }
+
+    /// Cells of the neighbour grid at most; 0 where nothing repeats.
+    fn cells(&self, raw: &RawNumerics, particles: f64) -> Option<f64> {
+        let domain = self.domain.as_ref()?;
+        let edge = CELL * raw.smoothing_ratio.as_ref()?.value.0 * raw.spacing.as_ref()?.value.0;
+        let axes = self.axes();
+        if !domain.periodic[..axes].contains(&true) {
+            return Some(0.0);
+        }
+        // What comes in is not known.
+        let inflows = self.raw.inflows.is_some();
+        let most = if inflows { MOST_PARTICLES } else { particles };
+        // As the grid is made (`solver::grid`).
+        let across = 4.0 * (4.0 * most + 64.0).powf(1.0 / axes as f64).max(8.0);
+        let cells = (0..axes).map(|a| {
+            let count = (domain.upper[a] - domain.lower[a]) / edge;
+            match domain.periodic[a] {
+                true => count,
+                false => count.clamp(1.0, across),
+            }
+        });
+        Some(cells.product())
     }
 }
 

@@ -32,6 +32,12 @@ impl Axis {
         }
     }
 
+    /// Lower and upper end of the cells [m]; `None` if periodic.
+    pub(super) fn ends(&self) -> Option<(f64, f64)> {
+        let upper = self.lower + self.edge * self.cells as f64;
+        self.period.is_none().then_some((self.lower, upper))
+    }
+
     /// The image inside the period; the value itself on other axes.
     pub(super) fn wrap(&self, x: f64) -> f64 {
         match self.period {
