@@ -116,21 +116,33 @@ pub(super) fn whole(
     let Some(value) = map.remove(field) else {
         return Ok(None);
     };
-    match value.as_u64() {
-        Some(n) if (least..=most).contains(&n) => Ok(Some(n)),
-        _ if value.is_number() && !value.is_f64() => Err(Refusal::new(
+    let Some(number) = as_whole(&value) else {
+        return Err(wrong(field, &value, "a whole number"));
+    };
+    match u64::try_from(number) {
+        Ok(n) if (least..=most).contains(&n) => Ok(Some(n)),
+        _ => Err(Refusal::new(
             Code::Range,
             format!("{field}: found {value}, allowed {least} to {most}"),
         )),
-        _ => Err(wrong(field, &value, "a whole number")),
     }
+}
+
+/// A number that is whole, however it is written: Python's `0.01 * 1e9` becomes 10000000.0.
+fn as_whole(value: &Value) -> Option<i128> {
+    /// Beyond it doubles do not tell whole numbers apart.
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    let exact = |x: f64| (x.fract() == 0.0 && x.abs() <= EXACT).then_some(x as i128);
+    let integer = value.as_i64().map(i128::from);
+    let integer = integer.or(value.as_u64().map(i128::from));
+    integer.or_else(|| value.as_f64().and_then(exact))
 }
 
 pub(super) fn time(map: &mut Map<String, Value>) -> Result<Option<i64>, Refusal> {
     match map.remove("t_ns") {
         None => Ok(None),
-        Some(value) => value
-            .as_i64()
+        Some(value) => as_whole(&value)
+            .and_then(|n| i64::try_from(n).ok())
             .map(Some)
             .ok_or_else(|| wrong("t_ns", &value, "a whole number of nanoseconds")),
     }

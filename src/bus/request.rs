@@ -150,6 +150,20 @@ mod tests {
     }
 
     #[test]
+    fn whole_numbers_may_have_a_point_or_an_exponent() {
+        let parse = |dt: &str| {
+            let body = format!(r#"{{"req":"1","t_ns":0.0,"dt_ns":{dt}}}"#);
+            Request::parse(Verb::Step, body.as_bytes()).map(|r| (r.t_ns, r.dt_ns))
+        };
+        for dt in ["10000000", "10000000.0", "1e7", "1.0E+7"] {
+            assert_eq!(parse(dt).unwrap(), (Some(0), Some(10_000_000)), "{dt}");
+        }
+        for dt in ["10000000.5", "1e300", "-1e7"] {
+            assert!(parse(dt).is_err(), "{dt}");
+        }
+    }
+
+    #[test]
     fn reading_needs_no_body_and_changing_needs_an_identifier() {
         assert!(Request::parse(Verb::Status, b"").is_ok());
         let refusal = refused(Verb::Step, "");

@@ -55,9 +55,10 @@ impl Component {
                     what,
                     found: format!("{} kg/s", shown(rate)),
                     allowed: format!(
-                        "0 to {} kg/s, density x face x velocity with these parameters: set a lower rate as well",
+                        "0 to {} kg/s, density x face x velocity with these parameters",
                         shown_bound(most)
                     ),
+                    remedy: "set a lower rate as well".to_owned(),
                 });
             }
             if rate > most * (1.0 + RANGE_SLACK) {
