@@ -5,7 +5,8 @@
 
 use super::engine::Devices;
 use crate::gauge::{
-    self, Crossing, DepthLine, Field, Front, MassBox, PRESSED_IN, PressureProbe, Profile, Reading,
+    self, Crossing, DepthLine, Edge, Field, Front, MassBox, PRESSED_IN, PressureProbe, Profile,
+    Reading,
 };
 use crate::gauge::{Validity, View};
 use crate::scene::{ForceTarget, Gauge, GaugeKind, Point, PressureQuantity, Scene};
@@ -17,8 +18,6 @@ pub(crate) struct Sampler<const D: usize> {
     gauges: Vec<Kind<D>>,
     /// What each gauge sees.
     sights: Vec<Sight>,
-    /// Ranks of the scene's materials, each once, from the lowest.
-    ranks: Vec<u8>,
 }
 
 /// What a gauge sees of the particles.
@@ -26,28 +25,8 @@ pub(crate) struct Sampler<const D: usize> {
 pub(crate) struct Sight {
     /// The one material, if not all.
     pub(crate) material: Option<u8>,
-    /// The one rank where materials meet, if not all ([`crate::material::Material::rank`]).
-    pub(crate) rank: Option<u8>,
-    /// What of it.
-    pub(crate) quantity: Shows,
-}
-
-/// What a gauge wants to know of each particle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Shows {
-    /// A pressure [Pa].
-    Pressure(PressureQuantity),
-    /// |tau| = sqrt(tau:tau/2) [Pa].
-    ShearStress,
-}
-
-/// Stress of materials of one rank.
-fn stress_of(rank: u8) -> Sight {
-    Sight {
-        material: None,
-        rank: Some(rank),
-        quantity: Shows::ShearStress,
-    }
+    /// Which pressure.
+    pub(crate) quantity: PressureQuantity,
 }
 
 #[derive(Clone, Debug)]
@@ -59,8 +38,11 @@ enum Kind<const D: usize> {
         before: f64,
     },
     Force(ForceTarget),
-    /// Where one material ends; the stress there is that of the lowest rank.
-    Interface(DepthLine<D>),
+    /// Where a material ends.
+    Interface {
+        line: DepthLine<D>,
+        material: u8,
+    },
 }
 
 impl<const D: usize> Sampler<D> {
@@ -73,19 +55,14 @@ impl<const D: usize> Sampler<D> {
         let gauges = scene.gauges.iter().map(|g| kind(g, &period)).collect();
         let sight = |g: &Gauge| Sight {
             material: g.material.map(|m| m as u8),
-            rank: None,
-            quantity: Shows::Pressure(match g.kind {
+            quantity: match g.kind {
                 GaugeKind::Pressure { quantity, .. } => quantity,
                 _ => PressureQuantity::Total,
-            }),
+            },
         };
-        let mut ranks: Vec<u8> = scene.materials.iter().map(|m| m.material.rank()).collect();
-        ranks.sort_unstable();
-        ranks.dedup();
         Self {
             gauges,
             sights: scene.gauges.iter().map(sight).collect(),
-            ranks,
         }
     }
 
@@ -140,12 +117,21 @@ impl<const D: usize> Sampler<D> {
     /// What some gauge sees, each once.
     pub(crate) fn seen(&self) -> Vec<Sight> {
         let mut seen = self.sights.clone();
-        if self.gauges.iter().any(|g| matches!(g, Kind::Interface(_))) {
-            seen.extend(self.ranks.iter().map(|&rank| stress_of(rank)));
-        }
         seen.sort_unstable();
         seen.dedup();
         seen
+    }
+
+    /// Materials whose interfaces some gauge reads, each once.
+    pub(crate) fn edges(&self) -> Vec<u8> {
+        let material = |g: &Kind<D>| match g {
+            Kind::Interface { material, .. } => Some(*material),
+            _ => None,
+        };
+        let mut edges: Vec<u8> = self.gauges.iter().filter_map(material).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
     }
 
     /// Mass that crossed each discharge gauge since the start [kg]: part of the saved state.
@@ -173,11 +159,12 @@ impl<const D: usize> Sampler<D> {
         true
     }
 
-    /// Readings of all gauges; `view` shows what a sight is of. `step` is the length of the last communication step [s],
-    /// 0 before the first.
+    /// Readings of all gauges; `view` shows what a sight is of, `edge` the interface of a material. `step` is the length of the last
+    /// communication step [s], 0 before the first.
     pub(crate) fn sample<'v>(
         &self,
         view: impl Fn(Sight) -> View<'v, D>,
+        edge: impl Fn(u8) -> Edge<'v, D>,
         devices: &Devices,
         step: f64,
     ) -> Vec<Reading> {
@@ -188,9 +175,8 @@ impl<const D: usize> Sampler<D> {
             }
             Kind::Discharge { section, before } => discharge(section, *before, step),
             Kind::Force(target) => force::<D>(*target, devices, step),
-            Kind::Interface(line) => {
-                let stress = self.ranks.iter().map(|&rank| view(stress_of(rank)));
-                gauge::interface_stress(line, &view(*sight), stress)
+            Kind::Interface { line, material } => {
+                gauge::interface_stress(line, &view(*sight), &edge(*material))
             }
         };
         self.gauges.iter().zip(&self.sights).map(read).collect()
@@ -204,7 +190,7 @@ impl<const D: usize> Sampler<D> {
         step: f64,
     ) -> Vec<Reading> {
         let read = |(gauge, before): (&Kind<D>, &Reading)| match gauge {
-            Kind::Field(_) | Kind::Interface(_) => before.clone(),
+            Kind::Field(_) | Kind::Interface { .. } => before.clone(),
             _ if before.validity == Validity::Outside => before.clone(),
             Kind::Discharge { section, before } => discharge(section, *before, step),
             Kind::Force(target) => force::<D>(*target, devices, step),
@@ -261,11 +247,15 @@ fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
         GaugeKind::Pressure { at, .. } => {
             Kind::Field(Field::Pressure(PressureProbe { at: flat(at) }))
         }
-        GaugeKind::InterfaceStress { foot, up, length } => Kind::Interface(DepthLine {
-            foot: flat(foot),
-            up: flat(up),
-            length: *length,
-        }),
+        GaugeKind::InterfaceStress { foot, up, length } => Kind::Interface {
+            line: DepthLine {
+                foot: flat(foot),
+                up: flat(up),
+                length: *length,
+            },
+            // The scene reader asks for one.
+            material: gauge.material.map_or(0, |m| m as u8),
+        },
         GaugeKind::Mass { lower, upper } => Kind::Field(Field::Mass(MassBox {
             lower: flat(lower),
             upper: flat(upper),

@@ -20,7 +20,7 @@ mod view;
 pub use crossing::Crossing;
 pub use depth::DepthLine;
 pub use front::Front;
-pub use interface::interface_stress;
+pub use interface::{Edge, interface_stress};
 pub use mass::{MassBox, PRESSED_IN};
 pub use pressure::PressureProbe;
 pub use profile::Profile;

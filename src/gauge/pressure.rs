@@ -36,7 +36,7 @@ impl<const D: usize> PressureProbe<D> {
 }
 
 /// Value at a place of the linear fit to what `view` shows as pressure; `None` where there is too little material.
-pub(super) fn fit_at<const D: usize>(view: &View<D>, at: &[f64; D]) -> Option<f64> {
+fn fit_at<const D: usize>(view: &View<D>, at: &[f64; D]) -> Option<f64> {
     let mut weights = 0.0;
     let mut near: Vec<(f64, [f64; D], f64)> = Vec::new();
     view.for_each_particle(at, |j, x, r| {

@@ -166,18 +166,6 @@ impl Material {
         self.is_fluid() && self.cohesion == 0.0
     }
 
-    /// How it ranks where materials meet: the stress there is to be looked for in what ranks lowest (docs/theory.md, F6). 0: without
-    /// yield stress, 1: fluids with one, 2: grains.
-    #[inline]
-    #[must_use]
-    pub fn rank(&self) -> u8 {
-        match (self.is_fluid(), self.flows()) {
-            (_, true) => 0,
-            (true, _) => 1,
-            _ => 2,
-        }
-    }
-
     /// Whether its particles' volumes are m/rho_0, so that density stands for pressure alone: fluids and saturated beds.
     #[inline]
     #[must_use]

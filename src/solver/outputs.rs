@@ -8,8 +8,7 @@ use crate::material::Material;
 use crate::math::{Vector, Workers};
 use crate::state::State;
 
-use super::record::Record;
-use super::{Scheme, Solver, StaysAwake, YieldForm};
+use super::{Scheme, Solver, StaysAwake};
 
 impl<const D: usize> Solver<D> {
     /// Why the scene never sleeps; none if it may.
@@ -62,36 +61,6 @@ impl<const D: usize> Solver<D> {
     #[must_use]
     pub fn material_of(&self, state: &State<D>, i: usize) -> &Material {
         &self.materials[state.grains.phase[i] as usize]
-    }
-
-    /// |tau| = sqrt(tau:tau/2) of each particle of a state that this solver has just stepped, started or resumed [Pa].
-    #[must_use]
-    pub fn shear_stress(&self, state: &State<D>) -> Vec<f64> {
-        let n = state.grains.len();
-        if !matches!(self.numerics.scheme, Scheme::Implicit) {
-            return (0..n)
-                .map(|i| self.viscosity[i] * self.kinematics[i].shear)
-                .collect();
-        }
-        let mut linear = vec![Record::default(); n];
-        self.stress(&state.grains.velocity, &mut linear, true, &[]);
-        let whole = 1.0 / (1.0 - self.numerics.pair_viscosity_share);
-        let is_exact = matches!(self.numerics.yield_form, YieldForm::Exact { .. });
-        let size = |i: usize| {
-            let material = self.material_of(state, i);
-            let stress = if is_exact && !material.is_newtonian() {
-                self.geometry.size(&state.grains.stress[i])
-            } else {
-                whole * self.geometry.size(&linear[i].stress::<D>())
-            };
-            // A fluid's viscosity and stress are those that work on the plain rate.
-            if material.is_fluid() {
-                stress / self.kinematics[i].correction
-            } else {
-                stress
-            }
-        };
-        (0..n).map(size).collect()
     }
 
     /// gamma of each particle [1/s], of the plain velocity gradient.

@@ -174,7 +174,7 @@ impl<const D: usize> Solver<D> {
 
     /// The pair form's viscosity between two particles, 0 where both have none: the harmonic mean [Pa s].
     #[inline(always)]
-    fn between(&self, i: usize, j: usize) -> f64 {
+    pub(super) fn between(&self, i: usize, j: usize) -> f64 {
         let (a, b) = (self.pair_viscosity[i], self.pair_viscosity[j]);
         2.0 * a * b / (a + b).max(f64::MIN_POSITIVE)
     }

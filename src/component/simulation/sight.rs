@@ -1,10 +1,8 @@
 //! What gauges see of a simulation: particles of a material, or all, with one kind of pressure; and walls.
 
-use std::cell::OnceCell;
-
 use super::Simulation;
-use crate::component::sampling::{Shows, Sight};
-use crate::gauge::{Reading, View};
+use crate::component::sampling::Sight;
+use crate::gauge::{Edge, Reading, View};
 use crate::math::Vector;
 use crate::scene::PressureQuantity;
 use crate::state::CellGrid;
@@ -15,6 +13,16 @@ struct Shown<const D: usize> {
     mass: Vec<f64>,
     density: Vec<f64>,
     pressure: Vec<f64>,
+    cells: CellGrid<D>,
+}
+
+/// Particles near an interface of a material, and what passes between them.
+struct Met<const D: usize> {
+    material: u8,
+    force: Vec<Vector<D>>,
+    area: Vec<Vector<D>>,
+    shear: Vec<f64>,
+    is_inside: Vec<bool>,
     cells: CellGrid<D>,
 }
 
@@ -32,13 +40,17 @@ impl<const D: usize> Simulation<D> {
         let solid = self.cells(&solid);
         let openings = self.state.gates.iter().map(|g| g.opening);
         let solids = self.solids.at(self.state.pose.now, openings);
-        // Of all ranks together.
-        let stress = OnceCell::new();
         let shown: Vec<(Sight, Shown<D>)> = self
             .sampler
             .seen()
             .into_iter()
-            .map(|sight| (sight, self.show(sight, &stress)))
+            .map(|sight| (sight, self.show(sight)))
+            .collect();
+        let met: Vec<Met<D>> = self
+            .sampler
+            .edges()
+            .into_iter()
+            .map(|material| self.meet(material))
             .collect();
         let view = |sight: Sight| {
             // All that a gauge sees is shown.
@@ -60,27 +72,28 @@ impl<const D: usize> Simulation<D> {
                 periodic: self.periodic.map(|p| p.is_some()),
             }
         };
-        self.sampler.sample(view, &self.devices, step)
+        let edge = |material: u8| {
+            let place = met.iter().position(|m| m.material == material);
+            let met = &met[place.unwrap_or(0)];
+            Edge {
+                force: &met.force,
+                area: &met.area,
+                shear: &met.shear,
+                is_inside: &met.is_inside,
+                cells: &met.cells,
+            }
+        };
+        self.sampler.sample(view, edge, &self.devices, step)
     }
 
     /// Particles of a material, or all. Grains that an outflow has taken stay in the arrays until lists are rebuilt; gauges do
     /// not see them.
-    fn show(&self, sight: Sight, stress: &OnceCell<Vec<f64>>) -> Shown<D> {
+    fn show(&self, sight: Sight) -> Shown<D> {
         let grains = &self.state.grains;
         let material = sight.material;
-        let (pressure, has): (Vec<f64>, Vec<bool>) = match sight.quantity {
-            Shows::Pressure(quantity) => self.pressures(quantity),
-            Shows::ShearStress => {
-                let stress = stress.get_or_init(|| self.solver.shear_stress(&self.state));
-                (stress.clone(), vec![true; stress.len()])
-            }
-        };
+        let (pressure, has) = self.pressures(sight.quantity);
         let is_seen = |i: &usize| {
-            let rank = || self.solver.material_of(&self.state, *i).rank();
-            !grains.drained[*i]
-                && has[*i]
-                && material.is_none_or(|m| m == grains.phase[*i])
-                && sight.rank.is_none_or(|r| r == rank())
+            !grains.drained[*i] && has[*i] && material.is_none_or(|m| m == grains.phase[*i])
         };
         let seen: Vec<usize> = (0..grains.len()).filter(is_seen).collect();
         let pick = |values: &[f64]| -> Vec<f64> { seen.iter().map(|&i| values[i]).collect() };
@@ -91,6 +104,25 @@ impl<const D: usize> Simulation<D> {
             mass: pick(&grains.mass),
             density: pick(&grains.density),
             pressure: pick(&pressure),
+        }
+    }
+
+    /// Particles that hand something to others across an interface of `material`.
+    fn meet(&self, material: u8) -> Met<D> {
+        let grains = &self.state.grains;
+        let handed = self.solver.handed(&self.state, material);
+        let shear: Vec<f64> = self.solver.shear_rates().collect();
+        let near: Vec<usize> = (0..grains.len())
+            .filter(|&i| handed[i].area != [0.0; D])
+            .collect();
+        let position: Vec<Vector<D>> = near.iter().map(|&i| grains.position[i]).collect();
+        Met {
+            material,
+            force: near.iter().map(|&i| handed[i].force).collect(),
+            area: near.iter().map(|&i| handed[i].area).collect(),
+            shear: near.iter().map(|&i| shear[i]).collect(),
+            is_inside: near.iter().map(|&i| grains.phase[i] == material).collect(),
+            cells: self.cells(&position),
         }
     }
 
