@@ -155,7 +155,7 @@ impl<const D: usize> Solver<D> {
             }
             *o = self.finish(&sums, phase, i, v);
             if FLUIDS && !self.slides.is_empty() {
-                block.textures.push(self.texture(&sums, o, phase));
+                block.textures.push(self.texture(&sums, phase));
             }
         }
         block.near = near;

@@ -49,7 +49,7 @@ impl<const D: usize> Solver<D> {
         self.prediction.resize(n, Prediction::default());
         self.note_what_flows(state);
         self.note_damped();
-        self.find_uneven_pressure();
+        self.find_uneven_pressure(state);
         let mut prediction = std::mem::take(&mut self.prediction);
         let loads = std::mem::take(&mut self.loads);
         let mut blocks = std::mem::take(&mut self.lists.blocks);

@@ -8,17 +8,20 @@
 //!
 //! f leaves surfaces alone, where M lacks neighbours. Forces cancel pair by pair as before. div v stays what it is: with volumes held
 //! it is the rate of a sum over places, sum_j V_j W_ij, and comes back with them; with T : G taken out, the adjoint of (F3), volumes
-//! drift. So (F3) does work: where nothing holds a fluid still chi = min(1, T_d gamma), as in (E8), else 1.
+//! drift. So (F3) does work: where nothing holds a fluid still never more than its viscosity takes,
+//!
+//!   chi = min(1, eta gamma/|p f dev M|),   |A|^2 = A:A/2,   else 1,                                                        (F3b)
+//!
+//! so that what turns or creeps slowly under its weight is not held back by p dev M, and what rests is left alone.
 //!
 //! Not for sand, whose shear stress goes through the same sums, nor for rings, nor where viscosity does next to nothing in one step
 //! (water).
 
 use crate::material::Material;
-use crate::math::{Geometry, Tensor, norm, trace};
+use crate::math::{Geometry, Tensor, dot, norm, scale, trace};
 use crate::state::State;
 
 use super::fluid_row::Row;
-use super::kinematics::Kinematics;
 use super::{Numerics, Scheme, Solver, explicit};
 
 /// s from which on neighbours lack on one side, and M says nothing of their order [1].
@@ -52,18 +55,13 @@ pub(super) fn who_slides(
 }
 
 impl<const D: usize> Solver<D> {
-    /// T of a particle from the sums of its row.
-    pub(super) fn texture(&self, sums: &Row<D>, k: &Kinematics, phase: u8) -> Tensor<D> {
+    /// f dev M of a particle from the sums of its row.
+    pub(super) fn texture(&self, sums: &Row<D>, phase: u8) -> Tensor<D> {
         let side = self.kernel.h * norm(&sums.side);
         if !self.slides[phase as usize] || side >= OPEN {
             return [[0.0; D]; D];
         }
-        let chi = if self.materials[phase as usize].flows() {
-            (self.numerics.diffusion_gate_time * k.shear).min(1.0)
-        } else {
-            1.0
-        };
-        let share = chi * (1.0 - side / OPEN);
+        let share = 1.0 - side / OPEN;
         let mean = trace(&sums.moment) / D as f64;
         let mut t = sums.moment.map(|row| row.map(|m| share * m));
         for (a, row) in t.iter_mut().enumerate() {
@@ -72,7 +70,7 @@ impl<const D: usize> Solver<D> {
         t
     }
 
-    /// Gathers T of every particle after a sweep; nothing in scenes that do without.
+    /// Gathers f dev M of every particle after a sweep; nothing in scenes that do without.
     pub(super) fn note_textures(&mut self, state: &State<D>) {
         if self.slides.is_empty() {
             return;
@@ -87,7 +85,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// p T of every particle [Pa]: what (F3) takes from its pressure.
-    pub(super) fn find_uneven_pressure(&mut self) {
+    pub(super) fn find_uneven_pressure(&mut self, state: &State<D>) {
         if self.slides.is_empty() {
             return;
         }
@@ -96,15 +94,48 @@ impl<const D: usize> Solver<D> {
         let pressure = self.normal_pressure();
         self.workers.each(&mut uneven, |i, u| {
             *u = self.texture[i].map(|row| row.map(|t| pressure[i] * t));
+            if self.material_of(state, i).flows() {
+                let stress = self.viscosity[i] * self.kinematics[i].shear;
+                *u = at_most(stress, u);
+            }
         });
         self.uneven_pressure = uneven;
     }
+}
+
+/// A stress, less of it where it is a larger shear stress than `most` (F3b) [Pa].
+fn at_most<const D: usize>(most: f64, stress: &Tensor<D>) -> Tensor<D> {
+    let size = (0.5 * stress.iter().map(|row| dot(row, row)).sum::<f64>()).sqrt();
+    if size <= most {
+        return *stress;
+    }
+    stress.map(|row| scale(most / size, &row))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::material::Viscous;
+
+    /// Work of p T per volume is p T : G, of viscosity tau gamma.
+    #[test]
+    fn uneven_rows_do_no_more_than_viscosity_takes() {
+        let uneven = [[0.3, -0.4], [-0.4, -0.3]];
+        assert_eq!(at_most(0.6, &uneven), uneven);
+        let bounded = at_most(0.1, &uneven);
+        assert!((bounded[0][1] / bounded[0][0] - uneven[0][1] / uneven[0][0]).abs() < 1e-12);
+        // The worst gradient of a shear rate of 1 lies along it.
+        let e = scale_to_unit_shear(&uneven);
+        let work: f64 = (0..2).map(|a| dot(&bounded[a], &e[a])).sum();
+        assert!((work - 0.1).abs() < 1e-12, "{work}");
+        assert_eq!(at_most(0.0, &uneven), [[0.0; 2]; 2]);
+        assert_eq!(at_most(0.0, &[[0.0; 2]; 2]), [[0.0; 2]; 2]);
+    }
+
+    fn scale_to_unit_shear(t: &Tensor<2>) -> Tensor<2> {
+        let size = t.as_flattened().iter().map(|c| c * c).sum::<f64>().sqrt();
+        t.map(|row| scale(0.5_f64.sqrt() / size, &row))
+    }
 
     /// Of a film on a slope that is larger by `size` under the same g: times grow by its root, stresses by itself.
     fn slides(size: f64, flow_index: f64, consistency: f64) -> bool {
