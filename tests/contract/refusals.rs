@@ -162,7 +162,8 @@ pub(crate) fn bad_states_are_refused(stage: &Stage) {
         refuse(&good[..share * good.len() / 12], "cut short");
     }
     let mut other = stage.scene.clone();
-    other.source += "\n# another scene\n";
+    other.source = other.source.replacen("name = \"", "name = \"another_", 1);
+    assert!(other.source != stage.scene.source);
     let mut other = (stage.make)(&other);
     refuse(&other.save().unwrap(), "another scene");
     driver.restore(&good).unwrap();
