@@ -111,7 +111,8 @@ impl Component {
 
     fn fail(&mut self, why: String) -> Error {
         self.life.mode = Mode::Failed;
-        self.life.step_failed = true;
+        self.life.half_stepped = true;
+        self.step_failed = true;
         Error::Solver(why)
     }
 

@@ -12,8 +12,8 @@ use crate::scene::Scene;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Life {
     pub(super) mode: Mode,
-    /// See [`Component::step_failed`].
-    pub(super) step_failed: bool,
+    /// Whether the engine stands within a step that failed, also when the component has been terminated since.
+    pub(super) half_stepped: bool,
     /// Simulated time [s].
     pub(super) time: f64,
     /// No step may end later [s]: the orchestrator's, no part of what is saved.
@@ -51,7 +51,7 @@ impl Life {
             outputs::sample(table, engine.as_ref(), &before, 0.0).map_err(Error::Setup)?;
         let life = Self {
             mode: Mode::Instantiated,
-            step_failed: false,
+            half_stepped: false,
             time: 0.0,
             stop: None,
             communication_steps: 0,
@@ -106,6 +106,7 @@ impl Component {
         }
         let stop = self.life.stop;
         self.life = Life { stop, ..life };
+        self.step_failed = false;
         true
     }
 

@@ -86,6 +86,8 @@ pub struct Component {
     notes: Vec<String>,
     /// For the host: no part of the state.
     host: HostSettings,
+    /// See [`Component::step_failed`]: no part of the state.
+    step_failed: bool,
     life: Life,
     /// What [`Component::back_to_kept`] goes back to, beside the engine's part: no part of the state.
     kept: Option<Life>,
@@ -112,6 +114,7 @@ impl Component {
             own_threads: threads,
             notes: Vec::new(),
             host: HostSettings::of(scene),
+            step_failed: false,
             life,
             kept: None,
         })
@@ -141,11 +144,11 @@ impl Component {
         self.life.mode
     }
 
-    /// Whether a step has failed on the way to the state that it is in: then no calls that were accepted lead there, also when
-    /// it has been terminated since, or saved and restored.
+    /// Whether a step has failed since the last reset or restored state: then no calls that were accepted lead to the
+    /// state that it is in, also when it has been terminated.
     #[must_use]
     pub fn step_failed(&self) -> bool {
-        self.life.step_failed
+        self.step_failed
     }
 
     /// Simulated time [s]: that of the last good step.
@@ -178,6 +181,7 @@ impl Component {
         self.host = HostSettings::of(&self.base);
         self.notes.clear();
         self.kept = None;
+        self.step_failed = false;
         Ok(())
     }
 
@@ -194,7 +198,7 @@ impl Component {
     /// The account of material; after a failed step that of the last good one, as outputs are.
     #[must_use]
     pub fn ledger(&self) -> MassLedger {
-        if self.life.step_failed {
+        if self.life.half_stepped {
             return outputs::ledger(&self.table, &self.life.outputs);
         }
         self.engine.ledger()

@@ -109,6 +109,7 @@ impl Component {
         };
         self.notes.clear();
         self.kept = None;
+        self.step_failed = false;
         Ok(())
     }
 }

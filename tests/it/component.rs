@@ -152,7 +152,7 @@ fn failed_step_leaves_time_and_outputs_at_the_last_good_step() {
     falling.restore(&ended).unwrap();
     assert_eq!(
         (falling.mode(), falling.step_failed(), falling.ledger()),
-        (Mode::Terminated, true, account)
+        (Mode::Terminated, false, account)
     );
     falling.reset().unwrap();
     assert_eq!((falling.mode(), falling.time()), (Mode::Instantiated, 0.0));
