@@ -94,6 +94,9 @@ pub struct Component {
 }
 
 impl Component {
+    /// Most threads that anybody may ask for, here and on the command line.
+    pub const MOST_THREADS: u16 = 256;
+
     /// Builds the scene's particles, walls, devices and gauges.
     ///
     /// # Errors

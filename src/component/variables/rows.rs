@@ -145,11 +145,6 @@ pub(super) fn list(scene: &Scene) -> VariableTable {
     table
 }
 
-impl Component {
-    /// Most threads that anybody may ask for, here and on the command line.
-    pub const MOST_THREADS: u16 = 256;
-}
-
 fn general() -> impl Iterator<Item = Row> {
     let mut time = Row::output("time", "s", Source::Time, "simulated time");
     time.variable.causality = Causality::Independent;

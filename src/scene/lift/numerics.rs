@@ -3,17 +3,17 @@
 use super::Lift;
 use crate::scene::raw::{RawNumerics, RotationWord, YieldWord};
 use crate::scene::types::{Dimension, NamedMaterial};
-use crate::solver::{Numerics, Rotation, Scheme, YieldForm};
+use crate::solver::{Numerics, Rotation, SHORTEST_PERIOD, Scheme, YieldForm};
 
 /// Most particles of a scene: memory of a large machine.
 pub(crate) const MOST_PARTICLES: f64 = 50e6;
 /// Most cells of the neighbour grid: those of particles and of walls take some 12 GB then.
 const MOST_CELLS: f64 = 1e9;
 /// Edge of such a cell: a kernel's support and the skin of neighbour lists, over the smoothing length [1].
-const CELL: f64 = 2.3;
+const CELL: f64 = 0.5 * SHORTEST_PERIOD;
 /// Largest radius of rings over the particle spacing. Masses are whole multiples of one that a ring there has 2^24 of (so that their
 /// sum is exact): the innermost, half a spacing from the axis, is right to 0.6 %.
-const LARGEST_RADIUS: f64 = 1e5;
+pub(super) const LARGEST_RADIUS: f64 = 1e5;
 /// Time scale of the gate on density diffusion, over c0/g [1].
 const GATE: f64 = 0.3;
 
