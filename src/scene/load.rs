@@ -1,12 +1,13 @@
 //! What lies on what at the start: the weight above a place makes its density (docs/theory.md, "Start").
 //!
 //! Only bodies that touch (`piles.rs`) press on each other, by way of others or themselves: not through the air, and not through a shelf or a shut gate
-//! that parts all of one from the other. What is joined beside a shelf counts as above it, as in a fluid it does.
+//! that parts all of one from the other. What stands on nothing (`footing.rs`) bears nothing. What is joined beside a shelf counts as above it, as in a fluid it does.
 //!
 //! "Above" is along an axis, against gravity's part along it. Of several (`ways.rs`) the one that gives a place least counts: a layer on a steep
 //! slope lies on its bed, not on its lower end. Where none comes out at a free surface (`tops.rs`), as from a bin that stands askew in the
 //! domain, it is against gravity.
 
+use super::footing::footing;
 use super::piles::{Piles, holds};
 use super::roof::pressures_under_roofs;
 use super::tops::{Tops, filled};
@@ -20,6 +21,8 @@ pub(super) struct Loads<'a, const D: usize> {
     scene: &'a Scene,
     ways: Ways,
     tops: Tops<'a, D>,
+    /// Of each body, whether what it touches stands on something.
+    standing: Vec<bool>,
     /// Pressures of places under a roof, for each body [Pa]; see [`pressures_under_roofs`].
     roofed: Vec<Vec<Option<f64>>>,
 }
@@ -33,10 +36,12 @@ impl<'a, const D: usize> Loads<'a, D> {
         lattices: &[Lattice],
         walls: &[[f64; D]],
     ) -> Self {
+        let piles = Piles::of::<D>(scene, lattices);
         let mut loads = Self {
             scene,
             ways: Ways::of(scene, up),
-            tops: Tops::new(scene, Piles::of::<D>(scene, lattices), walls),
+            standing: footing(scene, &piles, lattices, walls),
+            tops: Tops::new(scene, piles, walls),
             roofed: Vec::new(),
         };
         loads.roofed = pressures_under_roofs(&loads, lattices);
@@ -45,6 +50,9 @@ impl<'a, const D: usize> Loads<'a, D> {
 
     /// Pressure at `x`, which belongs to one of a body's places and lies near it [Pa].
     pub(super) fn at(&self, body: usize, (number, place): (usize, &Point), x: &Point) -> f64 {
+        if !self.standing[body] {
+            return 0.0;
+        }
         let pressure = match self.roofed[body].get(number) {
             Some(Some(pressure)) => *pressure,
             // A side along the way is what a place near it may be moved out of, to where nothing is above it.
@@ -160,8 +168,21 @@ mod tests {
     use super::*;
     use crate::scene;
 
-    /// Load at a place of the last of the bodies of a scene with this domain, before walls with these points [Pa].
+    /// Load at a place of the last of the bodies of a scene with this domain, before walls with these points, if it stands on something [Pa].
     fn load(domain: &str, bodies: &str, place: [f64; 2], walls: &[[f64; 2]]) -> f64 {
+        let place = [place[0], place[1], 0.0];
+        asked(domain, bodies, walls, |loads, body| {
+            loads.above(body, &place)
+        })
+    }
+
+    /// Of the loads of a scene and the number of its last body.
+    fn asked(
+        domain: &str,
+        bodies: &str,
+        walls: &[[f64; 2]],
+        what: impl Fn(&Loads<'_, 2>, usize) -> f64,
+    ) -> f64 {
         let text = format!(
             r#"
 name = "loads"
@@ -187,7 +208,7 @@ until = 1
             .collect();
         let up = (0..2).find(|k| scene.up()[*k] != 0.0).unwrap();
         let loads = Loads::new(&scene, up, &lattices, walls);
-        loads.above(scene.bodies.len() - 1, &[place[0], place[1], 0.0])
+        what(&loads, scene.bodies.len() - 1)
     }
 
     /// Load on the floor of a scene whose last body lies lowest, 20 mm deep, below `others` [Pa].
@@ -220,6 +241,41 @@ until = 1
         // In the air, and the thinnest shelf between.
         close(on_the_floor(&body("a", 0.03, 0.05)), 200.0);
         close(on_the_floor(&body("a", 0.025, 0.05)), 200.0);
+    }
+
+    #[test]
+    fn what_hangs_in_the_air_bears_nothing() {
+        let pressed = |bodies: &str, walls: &[[f64; 2]]| {
+            let domain = "lower = [-0.1, -0.1]\nupper = [0.2, 0.4]\ngravity = 10";
+            let low = [0.0525, 0.0025, 0.0];
+            asked(domain, bodies, walls, |loads, body| {
+                loads.at(body, (0, &low), &low)
+            })
+        };
+        let row = |from: [f64; 2], step: [f64; 2]| -> Vec<[f64; 2]> {
+            let at = |n: i32| [0, 1].map(|k| from[k] + f64::from(n) * step[k]);
+            (-40..40).map(at).collect()
+        };
+        let floor = |y: f64| row([0.0, y], [0.005, 0.0]);
+        let block = body("z", 0.0, 0.02);
+        close(pressed(&block, &floor(-0.0025)), 175.0);
+        close(pressed(&block, &[]), 0.0);
+        close(pressed(&block, &floor(-0.0125)), 0.0);
+        // Beside walls, wherever their points are, and under a lid.
+        for phase in 0..10 {
+            let beside = row([-0.0025, 5e-4 * f64::from(phase)], [0.0, 0.005]);
+            close(pressed(&block, &beside), 0.0);
+        }
+        close(pressed(&block, &floor(0.0225)), 0.0);
+        // On what stands, and what falls together.
+        let pair = body("y", 0.02, 0.05) + &block;
+        close(pressed(&pair, &floor(-0.0025)), 475.0);
+        close(pressed(&pair, &[]), 0.0);
+        let apart = body("y", -0.05, -0.02) + &block;
+        close(pressed(&apart, &floor(-0.0525)), 0.0);
+        // A steep slope bears what lies on it.
+        let steep = row([-0.0025, 0.0025], [0.001, -0.005]);
+        close(pressed(&block, &steep), 175.0);
     }
 
     #[test]

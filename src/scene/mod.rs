@@ -8,6 +8,7 @@ mod adjust;
 mod build;
 mod elements;
 mod error;
+mod footing;
 mod gates;
 mod ghosts;
 mod identity;

@@ -32,6 +32,13 @@ impl<'a> Piles<'a> {
         bodies.filter(move |(_, n)| **n == own).map(|(b, _)| b)
     }
 
+    /// Of each body, whether this is so of one in its pile.
+    pub(super) fn any(&self, of: &[bool]) -> Vec<bool> {
+        let pile_of =
+            |number: &usize| (self.numbers.iter().zip(of)).any(|(n, is)| n == number && *is);
+        self.numbers.iter().map(pile_of).collect()
+    }
+
     /// Whether a point lies in a body or what touches that.
     pub(super) fn fill(&self, body: usize, x: &Point) -> bool {
         self.around(body).any(|other| holds(self.scene, other, x))
