@@ -158,3 +158,26 @@ impl<const D: usize> Solver<D> {
         );
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::material::Material;
+    use crate::math::Geometry;
+    use crate::solver::{Solver, sample};
+
+    /// In motion a drained row stays as long as lists hold; what comes to rest beside it would lean on it for good.
+    #[test]
+    fn what_an_outflow_took_goes_before_anything_rests() {
+        let plane = Geometry::Planar { width: 1.0 };
+        let (plan, mut state) = sample::disordered::<2>(Material::sand_04(), plane, 14, 0.0);
+        let mut solver = Solver::new(plan, 1);
+        solver.start(&mut state);
+        state.grains.drained[100] = true;
+        solver.sweep_kinematics_in_valid_lists(&mut state, false);
+        assert_eq!(state.grains.len(), 196);
+        state.rest.quiet_steps = 1;
+        solver.sweep_kinematics_in_valid_lists(&mut state, false);
+        assert_eq!(state.grains.len(), 195);
+        assert!(!state.grains.drained.contains(&true));
+    }
+}
