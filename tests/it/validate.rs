@@ -90,12 +90,12 @@ fn a_part_of_a_name_chooses_runs_and_one_that_fits_none_is_refused() {
     let (code, _, error) = validate(&[&quick[..], &["newtn"]].concat(), folder.path());
     assert_eq!(code, Some(2), "{error}");
     assert!(
-        error.contains("newtn") && error.contains("newton_4"),
+        error.contains("newtn") && error.contains("newton_4_h2.0"),
         "{error}"
     );
-    let (code, _, error) = validate(&[&quick[..], &["newton_4"]].concat(), folder.path());
+    let (code, _, error) = validate(&[&quick[..], &["newton_4_h2"]].concat(), folder.path());
     assert_eq!(code, Some(0), "{error}");
     let page = folder.path().join("out/validation/quick/pages/film.md");
     let page = std::fs::read_to_string(page).unwrap();
-    assert!(page.contains("1 of 13 runs"), "{page}");
+    assert!(page.contains("1 of 26 runs"), "{page}");
 }

@@ -3,9 +3,9 @@
 use crate::validate::chart::{Chart, Curve, Look};
 use crate::validate::report::number;
 use crate::validate::template::{Template, point, points, rectangle};
-use crate::validate::{Effort, Figure, Member, Recording, Report, Results, Study, Table};
+use crate::validate::{Effort, Figure, Member, Recording, Report, Results, Rule, Study, Table};
 
-use super::yield_profile::{CLAY, Fluid, Layer, last_quarter, rows};
+use super::yield_profile::{Asked, CLAY, Fluid, Layer, last_quarter, rows};
 
 /// The study.
 pub(super) const STUDY: Study = Study {
@@ -114,6 +114,13 @@ impl Flow {
     }
 }
 
+const ASKED: Asked = Asked {
+    of: "",
+    at: "asked at 20 rows to the middle",
+    order: Rule::AtLeast(1.5),
+    reason: "asked",
+};
+
 /// Distance from the middle and velocity of every particle of every snapshot.
 fn profile(recording: &Recording) -> impl Iterator<Item = (f64, f64)> {
     recording.snapshots.iter().flat_map(|s| {
@@ -163,10 +170,9 @@ fn analyse(results: &Results) -> Result<Report, String> {
                 flow.fluid.spread_cell(errors.spread),
             ]);
         }
-        let asked = "asked at 20 rows to the middle";
         report
             .metrics
-            .extend(flow.fluid.judge(counts, found, asked));
+            .extend(flow.fluid.judge(counts, found, &ASKED));
     }
     report.tables.push(table);
     report.figures.push(figure(results, counts[1])?);

@@ -49,14 +49,14 @@ impl Fluid {
         }
     }
 
-    /// Judges errors at three numbers of rows; `asked` says what of.
+    /// Judges errors at three numbers of rows by what is asked of them.
     pub(super) fn judge(
         &self,
         counts: [u32; 3],
         found: [Option<Errors>; 3],
-        asked: &str,
+        asked: &Asked,
     ) -> Vec<Metric> {
-        let name = self.name;
+        let name = format!("{}{}", self.name, asked.of);
         let [coarse, middle, fine] = counts;
         let l2 = |k: usize| found[k].map(|f: Errors| f.particles);
         let profile = |k: usize| found[k].map(|f: Errors| f.profile);
@@ -68,19 +68,19 @@ impl Fluid {
                 format!("{name}: L2 of velocity, {middle} rows"),
                 l2(1),
                 Rule::AtMost(0.01),
-                asked,
+                asked.at,
             ),
             Metric::new(
                 format!("{name}: order from {coarse} to {fine} rows"),
                 l2(0).zip(l2(2)).map(order),
-                Rule::AtLeast(1.5),
-                "asked",
+                asked.order,
+                asked.reason,
             ),
             Metric::new(
                 format!("{name}: order of the profile from {coarse} to {fine} rows"),
                 profile(0).zip(profile(2)).map(order),
                 Rule::Report(None),
-                "means of rows: particles stand up to a tenth of a spacing off their row and move with it",
+                "means over rows and times",
             ),
         ];
         if self.yield_stress > 0.0 {
@@ -93,6 +93,19 @@ impl Fluid {
         }
         metrics
     }
+}
+
+/// What is asked of a fluid's errors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    /// Follows the fluid's name: which of its runs.
+    pub(super) of: &'static str,
+    /// Why 1 % at the middle number of rows.
+    pub(super) at: &'static str,
+    /// Of the order of single particles' errors.
+    pub(super) order: Rule,
+    /// Why that order.
+    pub(super) reason: &'static str,
 }
 
 /// Rows over the thickness of a layer.

@@ -73,7 +73,8 @@ impl Found {
         };
         let at = |rows: u32| of(rows, &rows.to_string());
         let [coarse, fine, finest] = super::rows(effort);
-        let finer = if rows == finest {
+        // To the next finer one that goes on so long.
+        let finer = if rows != coarse && until(effort, finest) * unit() > 0.999 * time {
             [fine, finest]
         } else {
             [coarse, fine]
