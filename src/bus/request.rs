@@ -122,6 +122,29 @@ mod tests {
         Request::parse(verb, body.as_bytes()).unwrap_err()
     }
 
+    /// Requests that are refused, by what code, and a part of what is said.
+    #[rustfmt::skip]
+    const REFUSED: [(Verb, &str, Code, &str); 18] = [
+        (Verb::Step, r#"{"req":"1","dt_ns":NaN}"#, Code::BadRequest, "NaN and Infinity"),
+        (Verb::Step, r#"[1]"#, Code::BadRequest, "an array of 1"),
+        (Verb::Step, r#"{"req":"1","dt":1}"#, Code::BadRequest, "unknown field \"dt\"; it takes req, client, t_ns, dt_ns"),
+        (Verb::Get, r#"{"inputs":{}}"#, Code::BadRequest, "get: unknown field"),
+        (Verb::Step, r#"{"req":7}"#, Code::Type, "req: found 7, allowed a string"),
+        (Verb::Step, r#"{"req":""}"#, Code::Type, "1 to 64"),
+        (Verb::Step, r#"{"req":"1","dt_ns":0}"#, Code::Range, "dt_ns: found 0, allowed 1 to"),
+        (Verb::Step, r#"{"req":"1","dt_ns":-5}"#, Code::Range, "dt_ns: found -5"),
+        (Verb::Step, r#"{"req":"1","dt_ns":0.01}"#, Code::Type, "a whole number"),
+        (Verb::Step, r#"{"req":"1","t_ns":"now"}"#, Code::Type, "nanoseconds"),
+        (Verb::Step, r#"{"req":"1","req":"2"}"#, Code::BadRequest, "stands there twice"),
+        (Verb::Set, r#"{"req":"1"}"#, Code::BadRequest, "missing or empty \"inputs\""),
+        (Verb::Set, r#"{"req":"1","inputs":{"a":"NaN"}}"#, Code::Type, "a: found \"NaN\""),
+        (Verb::Set, r#"{"req":"1","inputs":[1]}"#, Code::Type, "inputs: found an array"),
+        (Verb::Get, r#"{"outputs":"a"}"#, Code::Type, "names of variables"),
+        (Verb::Run, r#"{"req":"1","realtime_factor":0}"#, Code::Range, "more than 0"),
+        (Verb::Restore, r#"{"req":"1","state":"?"}"#, Code::BadRequest, "save gave"),
+        (Verb::Restore, r#"{"req":"1"}"#, Code::BadRequest, "missing or empty \"state\""),
+    ];
+
     #[test]
     fn a_step_is_read_whole() {
         let body = r#"{"req":"c7e1","client":"orch-1","t_ns":1200000000,"dt_ns":10000000,
@@ -172,107 +195,7 @@ mod tests {
 
     #[test]
     fn fields_are_refused_by_code_and_with_what_is_allowed() {
-        let table = [
-            (
-                Verb::Step,
-                r#"{"req":"1","dt_ns":NaN}"#,
-                Code::BadRequest,
-                "NaN and Infinity",
-            ),
-            (Verb::Step, r#"[1]"#, Code::BadRequest, "an array of 1"),
-            (
-                Verb::Step,
-                r#"{"req":"1","dt":1}"#,
-                Code::BadRequest,
-                "unknown field \"dt\"; it takes req, client, t_ns, dt_ns",
-            ),
-            (
-                Verb::Get,
-                r#"{"inputs":{}}"#,
-                Code::BadRequest,
-                "get: unknown field",
-            ),
-            (
-                Verb::Step,
-                r#"{"req":7}"#,
-                Code::Type,
-                "req: found 7, allowed a string",
-            ),
-            (Verb::Step, r#"{"req":""}"#, Code::Type, "1 to 64"),
-            (
-                Verb::Step,
-                r#"{"req":"1","dt_ns":0}"#,
-                Code::Range,
-                "dt_ns: found 0, allowed 1 to",
-            ),
-            (
-                Verb::Step,
-                r#"{"req":"1","dt_ns":-5}"#,
-                Code::Range,
-                "dt_ns: found -5",
-            ),
-            (
-                Verb::Step,
-                r#"{"req":"1","dt_ns":0.01}"#,
-                Code::Type,
-                "a whole number",
-            ),
-            (
-                Verb::Step,
-                r#"{"req":"1","t_ns":"now"}"#,
-                Code::Type,
-                "nanoseconds",
-            ),
-            (
-                Verb::Step,
-                r#"{"req":"1","req":"2"}"#,
-                Code::BadRequest,
-                "stands there twice",
-            ),
-            (
-                Verb::Set,
-                r#"{"req":"1"}"#,
-                Code::BadRequest,
-                "missing or empty \"inputs\"",
-            ),
-            (
-                Verb::Set,
-                r#"{"req":"1","inputs":{"a":"NaN"}}"#,
-                Code::Type,
-                "a: found \"NaN\"",
-            ),
-            (
-                Verb::Set,
-                r#"{"req":"1","inputs":[1]}"#,
-                Code::Type,
-                "inputs: found an array",
-            ),
-            (
-                Verb::Get,
-                r#"{"outputs":"a"}"#,
-                Code::Type,
-                "names of variables",
-            ),
-            (
-                Verb::Run,
-                r#"{"req":"1","realtime_factor":0}"#,
-                Code::Range,
-                "more than 0",
-            ),
-            (
-                Verb::Restore,
-                r#"{"req":"1","state":"?"}"#,
-                Code::BadRequest,
-                "save gave",
-            ),
-            (
-                Verb::Restore,
-                r#"{"req":"1"}"#,
-                Code::BadRequest,
-                "missing or empty \"state\"",
-            ),
-        ];
-        for (verb, body, code, part) in table {
+        for (verb, body, code, part) in REFUSED {
             let refusal = refused(verb, body);
             assert_eq!(refusal.code, code, "{body}: {refusal}");
             assert!(refusal.message.contains(part), "{body}: {refusal}");

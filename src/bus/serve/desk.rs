@@ -155,32 +155,42 @@ impl Desk {
             shared: self.shared.clone(),
             jobs: self.jobs.clone(),
         };
-        let request = match read {
-            Ok(request) => request,
+        match read {
+            Ok(request) => {
+                waiting.req.clone_from(&request.req);
+                let names = [verb, request.req.clone(), request.client.clone(), body];
+                match self.known_here(&request) {
+                    Some(reply) => self.answer_here(waiting, reply, names),
+                    None => self.hand_in(request, waiting, names),
+                }
+            }
             Err(refusal) => {
                 waiting.req = Request::req_of(&bytes);
                 let reply = Reply::refusal(&waiting.req, &refusal, &self.shared.status());
                 let (req, client) = (cut(&waiting.req), cut(&text_in(&bytes, "client")));
-                return self.answer_here(waiting, reply, [verb, req, client, body]);
+                self.answer_here(waiting, reply, [verb, req, client, body]);
             }
-        };
-        waiting.req.clone_from(&request.req);
-        let names = [verb, request.req.clone(), request.client.clone(), body];
+        }
+    }
+
+    /// The reply to what needs no component: `status`, and everything where somebody else owns time.
+    fn known_here(&self, request: &Request) -> Option<Reply> {
         if request.verb == Verb::Status {
             let status = self.shared.status();
             let mut fields = status.figures();
             fields.extend(self.shared.live());
-            let reply = Reply::success(&request.req, &status, fields);
-            return self.answer_here(waiting, reply, names);
+            return Some(Reply::success(&request.req, &status, fields));
         }
-        if let Some(aside) = &self.aside {
-            let status = self.shared.status();
-            let reply = match aside.answer(&request) {
-                Ok(fields) => Reply::success(&request.req, &status, fields),
-                Err(refusal) => Reply::refusal(&request.req, &refusal, &status),
-            };
-            return self.answer_here(waiting, reply, names);
-        }
+        let aside = self.aside.as_ref()?;
+        let status = self.shared.status();
+        Some(match aside.answer(request) {
+            Ok(fields) => Reply::success(&request.req, &status, fields),
+            Err(refusal) => Reply::refusal(&request.req, &refusal, &status),
+        })
+    }
+
+    /// Gives the component a request, or refuses it where there is no room or no server any more.
+    fn hand_in(&self, request: Request, waiting: Waiting, names: [String; 4]) {
         let [.., body] = names.clone();
         let task = Task::Call {
             request: Box::new(request),
