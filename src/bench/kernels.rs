@@ -89,66 +89,101 @@ pub fn measure<const D: usize>(count: usize, rounds: usize, watch: &mut dyn FnMu
     let side = (count as f64).powf(1.0 / D as f64).round().max(1.0) as usize;
     let mut passes = Passes::<D>::new(side, JITTER);
     let mut roofline = roofline(&passes);
-    let particles = passes.particles();
-    let repeats = LEAST_WORK.div_ceil(particles);
-    let worst = passes
+    let disagreement = passes
         .disagreement()
         .into_iter()
         .map(|(_, difference)| difference)
         .chain(roofline.as_mut().map(Roofline::disagreement))
         .fold(0.0, f64::max);
-    let mut fast = vec![Vec::new(); Pass::ALL.len()];
-    let mut plain = vec![Vec::new(); Pass::ALL.len()];
-    let (mut kernel, mut kernel_plain, mut kernel_cells) = (Vec::new(), Vec::new(), Vec::new());
+    let mut times = Times::default();
     for round in 0..rounds {
         if let Some(roofline) = &mut roofline {
-            let count = roofline.particles();
-            kernel.push(each(count, repeats, || timed(|| roofline.run()).0));
-            kernel_plain.push(each(count, repeats, || timed(|| roofline.run_plain()).0));
-            kernel_cells.push(each(count, repeats, || timed(|| roofline.run_cells()).0));
+            times.add_roofline(roofline, passes.particles());
         }
+        times.add_passes(&mut passes);
+        watch((round + 1) as f64 / rounds as f64);
+    }
+    let neighbours = passes.pairs() as f64 / passes.particles() as f64;
+    Kernels {
+        dimension: D,
+        particles: passes.particles(),
+        pairs: passes.pairs(),
+        rounds,
+        passes: times.of_passes(),
+        roofline: roofline.and_then(|kernel| times.of_roofline(&kernel, neighbours)),
+        disagreement,
+    }
+}
+
+/// CPU time a particle in each round [ns].
+#[derive(Default)]
+struct Times {
+    /// Of each sweep, and of its plain form if it has one, in the order of [`Pass::ALL`].
+    fast: [Vec<f64>; Pass::ALL.len()],
+    plain: [Vec<f64>; Pass::ALL.len()],
+    /// Of the roofline kernel, its plain form over lists, and its plain form that searches cells.
+    kernel: Vec<f64>,
+    kernel_plain: Vec<f64>,
+    kernel_cells: Vec<f64>,
+}
+
+impl Times {
+    /// A round of the kernel, as often as sweeps over `particles` are repeated.
+    fn add_roofline(&mut self, roofline: &mut Roofline, particles: usize) {
+        let (count, repeats) = (roofline.particles(), LEAST_WORK.div_ceil(particles));
+        let run = each(count, repeats, || timed(|| roofline.run()).0);
+        self.kernel.push(run);
+        let plain = each(count, repeats, || timed(|| roofline.run_plain()).0);
+        self.kernel_plain.push(plain);
+        let cells = each(count, repeats, || timed(|| roofline.run_cells()).0);
+        self.kernel_cells.push(cells);
+    }
+
+    /// A round of all sweeps.
+    fn add_passes<const D: usize>(&mut self, passes: &mut Passes<D>) {
+        let particles = passes.particles();
+        let repeats = LEAST_WORK.div_ceil(particles);
         for (k, pass) in Pass::ALL.into_iter().enumerate() {
-            fast[k].push(each(particles, repeats, || {
+            self.fast[k].push(each(particles, repeats, || {
                 passes.prepare(pass);
                 timed(|| passes.run(pass)).0
             }));
             if pass.has_plain() {
-                plain[k].push(each(particles, repeats, || {
+                self.plain[k].push(each(particles, repeats, || {
                     timed(|| passes.run_plain(pass)).0
                 }));
             }
         }
-        watch((round + 1) as f64 / rounds as f64);
     }
-    let pairs = Pass::ALL.iter().position(|p| *p == Pass::Pairs);
-    let time = |(k, pass): (usize, Pass)| PassTime {
-        name: pass.name().to_owned(),
-        ns: median(&fast[k]),
-        plain_ns: pass.has_plain().then(|| median(&plain[k])),
-        times_plain: pass.has_plain().then(|| median_ratio(&plain[k], &fast[k])),
-    };
-    let roofline = roofline.zip(pairs).map(|(r, k)| {
+
+    fn of_passes(&self) -> Vec<PassTime> {
+        let time = |(k, pass): (usize, Pass)| {
+            let (fast, plain) = (&self.fast[k], &self.plain[k]);
+            PassTime {
+                name: pass.name().to_owned(),
+                ns: median(fast),
+                plain_ns: pass.has_plain().then(|| median(plain)),
+                times_plain: pass.has_plain().then(|| median_ratio(plain, fast)),
+            }
+        };
+        Pass::ALL.into_iter().enumerate().map(time).collect()
+    }
+
+    /// The kernel against the sweep over pairs, which has so many neighbours a particle.
+    fn of_roofline(&self, kernel: &Roofline, neighbours: f64) -> Option<RooflineTime> {
+        let pairs = Pass::ALL.iter().position(|p| *p == Pass::Pairs)?;
+        let fast = &self.fast[pairs];
         // Both go through the same particles but for at most three.
-        let same =
-            passes.pairs() as f64 / particles as f64 * r.particles() as f64 / r.pairs() as f64;
-        RooflineTime {
-            ns: median(&kernel),
-            plain_ns: median(&kernel_plain),
-            cells_ns: median(&kernel_cells),
-            filled: r.filled(),
-            reached: same * median_ratio(&kernel, &fast[k]),
-            times_plain: same * median_ratio(&kernel_plain, &fast[k]),
-            times_cells: same * median_ratio(&kernel_cells, &fast[k]),
-        }
-    });
-    Kernels {
-        dimension: D,
-        particles,
-        pairs: passes.pairs(),
-        rounds,
-        passes: Pass::ALL.into_iter().enumerate().map(time).collect(),
-        roofline,
-        disagreement: worst,
+        let same = neighbours * kernel.particles() as f64 / kernel.pairs() as f64;
+        Some(RooflineTime {
+            ns: median(&self.kernel),
+            plain_ns: median(&self.kernel_plain),
+            cells_ns: median(&self.kernel_cells),
+            filled: kernel.filled(),
+            reached: same * median_ratio(&self.kernel, fast),
+            times_plain: same * median_ratio(&self.kernel_plain, fast),
+            times_cells: same * median_ratio(&self.kernel_cells, fast),
+        })
     }
 }
 

@@ -83,6 +83,27 @@ const QUICK: Plan = Plan {
     threads: &[(3e3, (2, 2), 2)],
 };
 
+impl Plan {
+    /// Expected CPU time of each part in turn, if [A]'s scheme may take so much [s].
+    fn expected(&self, paper_a_budget: f64) -> Vec<f64> {
+        let size = |count: &usize| *count as f64 * self.rounds as f64 * 4e-6;
+        let mut parts: Vec<f64> = self.plane.iter().map(size).collect();
+        parts.extend(self.space.iter().map(|count| 5.0 * size(count)));
+        let (simulated, repeats) = self.column;
+        parts.push(20.0 * simulated * repeats as f64);
+        parts.push(1.5 * self.rest);
+        // Pair by pair, and in lanes.
+        parts.push(1.7 * paper_a_budget.min(1300.0 * self.paper_a));
+        let (refinements, simulated) = self.sizes;
+        let finer = refinements.iter().map(|r| 4.0 * simulated * r.powi(3));
+        parts.push(finer.sum());
+        for (count, (before, steps), rounds) in self.threads {
+            parts.push(count * 4e-6 * (before + 2 * rounds * steps) as f64);
+        }
+        parts
+    }
+}
+
 /// Adds the parts' progress up.
 struct Tally<'a> {
     /// Expected seconds of the parts to come.
@@ -117,25 +138,7 @@ impl Tally<'_> {
 pub fn run(choices: &Choices, watch: &mut dyn FnMut(Progress)) -> Result<SpeedRun, Error> {
     let plan = if choices.quick { QUICK } else { FULL };
     let mut machine = Machine::here();
-    let size = |count: &usize| *count as f64 * plan.rounds as f64 * 4e-6;
-    // Expected seconds of each part.
-    let mut parts: Vec<f64> = plan.plane.iter().map(size).collect();
-    parts.extend(plan.space.iter().map(|count| 5.0 * size(count)));
-    let (simulated, repeats) = plan.column;
-    parts.push(20.0 * simulated * repeats as f64);
-    parts.push(1.5 * plan.rest);
-    // Pair by pair, and in lanes.
-    parts.push(1.7 * choices.paper_a_budget.min(1300.0 * plan.paper_a));
-    parts.push(
-        plan.sizes
-            .0
-            .iter()
-            .map(|r| 4.0 * plan.sizes.1 * r.powi(3))
-            .sum(),
-    );
-    for (count, (before, steps), rounds) in plan.threads {
-        parts.push(count * 4e-6 * (before + 2 * rounds * steps) as f64);
-    }
+    let parts = plan.expected(choices.paper_a_budget);
     let mut tally = Tally {
         done: 0.0,
         total: parts.iter().sum(),
@@ -153,6 +156,7 @@ pub fn run(choices: &Choices, watch: &mut dyn FnMut(Progress)) -> Result<SpeedRu
             kernels::measure::<3>(*count, plan.rounds, tell)
         }));
     }
+    let (simulated, repeats) = plan.column;
     let column = tally.part("the column", |tell| {
         scenes::column(simulated, repeats, tell)
     })?;

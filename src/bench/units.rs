@@ -1,18 +1,17 @@
 //! Unit benchmarks: each part of a step and of what surrounds it, by particle count, in the plane and in space. Runs are
 //! kept, and two of them, of two commits, compared.
 
+mod component;
+
 use std::path::Path;
 
-use prost::Message;
 use serde::{Deserialize, Serialize};
 
 use super::clock::{median, timed};
 use super::{Error, Machine, kernels};
-use crate::component::{Causality, Component, ValueReference};
 use crate::material::grain_compression;
-use crate::record::{RecordOptions, Recorder};
 use crate::validate::report::number;
-use crate::wire::convert::point_cloud;
+use component::Size;
 
 /// One part at one size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -86,7 +85,12 @@ pub fn run(
             sweeps::<3>(count, rounds, &mut run.units);
         }
         watch((done + 0.3 * cost(&job)) / total, &what);
-        whole(dimension, count, rounds, folder, &mut run.units)?;
+        let size = Size {
+            dimension,
+            count,
+            rounds,
+        };
+        component::measure(size, folder, &mut run.units)?;
         done += cost(&job);
     }
     run.machine.finish();
@@ -161,130 +165,6 @@ fn unit(
     }
 }
 
-/// A level fill with gauges of each kind.
-fn scene(dimension: usize, count: usize) -> String {
-    let (side, height) = (1.0, 0.5);
-    let spacing = if dimension == 2 {
-        (side * height / count as f64).sqrt()
-    } else {
-        (side * side * height / count as f64).cbrt()
-    };
-    let margin = 8.0 * spacing;
-    let (low, high) = (-margin, side + margin);
-    let mut text = "name = \"unit\"\n".to_owned();
-    let walls: &[(&str, usize, f64, f64)] = &[
-        ("floor", dimension - 1, 0.0, 1.0),
-        ("west", 0, 0.0, 1.0),
-        ("east", 0, side, -1.0),
-        ("south", 1, 0.0, 1.0),
-        ("north", 1, side, -1.0),
-    ];
-    let wide = |v: f64| vec![v; dimension];
-    let mut top = wide(side);
-    top[dimension - 1] = height;
-    text += &format!(
-        "dimension = {dimension}\n[domain]\nlower = {:?}\nupper = {:?}\n[numerics]\nspacing = {spacing:?}\n\
-         [materials.sand]\nlaw = \"mu_i\"\npreset = \"sand_04\"\n\
-         [bodies.fill]\nmaterial = \"sand\"\nbox = {{ lower = {:?}, upper = {top:?} }}\n",
-        wide(low),
-        wide(high),
-        wide(0.0),
-    );
-    for (name, axis, at, towards) in &walls[..2 * dimension - 1] {
-        let (mut point, mut normal) = (wide(0.0), wide(0.0));
-        (point[*axis], normal[*axis]) = (*at, *towards);
-        text += &format!(
-            "[walls.{name}]\nplane = {{ point = {point:?}, normal = {normal:?} }}\nslip = \"friction\"\nwall_friction = 0.3\n"
-        );
-    }
-    let (mut foot, mut probe) = (wide(0.5), wide(0.5));
-    (foot[dimension - 1], probe[dimension - 1]) = (0.0, 0.1);
-    text + &format!(
-        "[gauges.depth]\nkind = \"depth\"\nfoot = {foot:?}\n[gauges.push]\nkind = \"force\"\non = \"wall.floor\"\n\
-         [gauges.probe]\nkind = \"pressure\"\nat = {probe:?}\n[run]\nstep = 0.01\nuntil = 1.0\n"
-    )
-}
-
-/// A step, gauges, saving, restoring, logging and publishing of a whole component.
-fn whole(
-    dimension: usize,
-    count: usize,
-    rounds: usize,
-    folder: &Path,
-    units: &mut Vec<Unit>,
-) -> Result<(), Error> {
-    let refused = |why: String| Error::Scene {
-        scene: format!("{count} particles in {dimension} dimensions"),
-        why,
-    };
-    let text = scene(dimension, count);
-    let scene = crate::scene::parse("unit", &text).map_err(|e| refused(e.to_string()))?;
-    let mut component = Component::new(&scene).map_err(|e| refused(e.to_string()))?;
-    component
-        .initialize(0.0, None)
-        .map_err(|e| refused(e.to_string()))?;
-    let particles = component.statistics().particles as usize;
-    let rounds = rounds.min(7);
-    let mut add = |name: &str, work: &mut dyn FnMut()| {
-        units.push(unit(name, dimension, particles, rounds, work))
-    };
-    let mut failed = None;
-    // A tenth of the acoustic bound: one internal step each.
-    let h = 0.1 * scene.numerics.acoustic_step();
-    add("do_step of one internal step", &mut || {
-        let time = component.time();
-        failed = component.do_step(time, h).err().or(failed.take());
-    });
-    if let Some(error) = failed {
-        return Err(refused(error.to_string()));
-    }
-    let rows = component.variables().rows().iter();
-    let outputs = rows.filter(|row| row.causality == Causality::Output);
-    let outputs: Vec<(ValueReference, usize)> = outputs.map(|r| (r.reference, r.len())).collect();
-    let references: Vec<ValueReference> = outputs.iter().map(|o| o.0).collect();
-    let mut values = vec![0.0; outputs.iter().map(|o| o.1).sum()];
-    // Gauges are sampled within `do_step`; reading outputs copies what they found, also that of a restored state.
-    let saved = component.save().map_err(|e| refused(e.to_string()))?;
-    add("save", &mut || {
-        std::hint::black_box(component.save().map_or(0, |bytes| bytes.len()));
-    });
-    let mut restored = 0;
-    add("restore", &mut || {
-        restored += usize::from(component.restore(&saved).is_ok());
-    });
-    add("restore and read of all outputs", &mut || {
-        restored += usize::from(component.restore(&saved).is_ok());
-        restored += usize::from(component.get(&references, &mut values).is_ok());
-    });
-    add("read of all outputs", &mut || {
-        restored += usize::from(component.get(&references, &mut values).is_ok());
-    });
-    add("publish: a picture of all particles as bytes", &mut || {
-        std::hint::black_box(point_cloud(&component).encode_to_vec().len());
-    });
-    std::hint::black_box(restored);
-    let path = folder.join(format!("unit-{dimension}-{count}.mcap"));
-    let mut options = RecordOptions::of(&component);
-    options.particles_every = 0.0;
-    let report = component
-        .do_step(component.time(), h)
-        .map_err(|e| refused(e.to_string()))?;
-    let mut recorder =
-        Recorder::create(&path, &component, options).map_err(|e| refused(e.to_string()))?;
-    let (time, mut written) = (component.time(), 0);
-    add("log of one communication step", &mut || {
-        let step = recorder.record_step(&component, &report, time - h, h, "bench");
-        written += usize::from(step.is_ok());
-    });
-    if particles <= 100_000 {
-        add("log of all particles", &mut || {
-            written += usize::from(recorder.particles(&component).is_ok());
-        });
-    }
-    std::hint::black_box(written);
-    recorder.discard().map_err(|e| refused(e.to_string()))
-}
-
 /// A table of a run, or of two with the ratio of the second to the first.
 #[must_use]
 pub fn table(first: &UnitsRun, second: Option<&UnitsRun>) -> String {
@@ -345,8 +225,14 @@ mod tests {
         let folder = temp_dir::TempDir::new().unwrap();
         let mut units = Vec::new();
         sweeps::<2>(300, 2, &mut units);
-        whole(2, 300, 2, folder.path(), &mut units).unwrap();
-        whole(3, 500, 2, folder.path(), &mut units).unwrap();
+        for (dimension, count) in [(2, 300), (3, 500)] {
+            let size = Size {
+                dimension,
+                count,
+                rounds: 2,
+            };
+            component::measure(size, folder.path(), &mut units).unwrap();
+        }
         for name in [
             "neighbour search",
             "equation of state",

@@ -2,6 +2,8 @@
 //!
 //! What is timed and written stands in [`crate::bench`]; here are arguments, progress and the table at the end.
 
+mod precision;
+
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -24,7 +26,7 @@ enum What {
     /// Where the time goes: sweeps alone against plain ones and a roofline kernel, whole scenes, threads
     Speed(Speed),
     /// Error against CPU time over resolutions and numerical choices, with the Pareto front
-    Precision(Precision),
+    Precision(precision::Args),
     /// What several phases cost a scene that has none of them
     Phases(PhasesArgs),
     /// Each part by itself: search, sweeps, equation of state, solve, step, save, restore, outputs, log, publish
@@ -71,29 +73,6 @@ struct Compare {
     first: PathBuf,
     /// The other
     second: PathBuf,
-}
-
-/// What may be typed after `sandgate bench precision`.
-#[derive(Debug, clap::Args)]
-struct Precision {
-    /// Studies, all if none is named
-    #[arg(value_name = "NAME")]
-    names: Vec<String>,
-    /// Say which studies there are; run nothing
-    #[arg(long)]
-    list: bool,
-    /// Run nothing; write from the kept run
-    #[arg(long)]
-    only_page: bool,
-    /// Folder in which the run is kept, as precision.json
-    #[arg(long, value_name = "DIR", default_value = "benches/runs")]
-    out: PathBuf,
-    /// Page to write, as docs/precision.md; its figures go beside it
-    #[arg(long, value_name = "FILE")]
-    page: Option<PathBuf>,
-    /// Table to write as CSV
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
 }
 
 /// What may be typed after `sandgate bench speed`.
@@ -154,7 +133,7 @@ fn file_name(text: &str) -> Result<String, String> {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     match &args.what {
         What::Speed(args) => speed(args),
-        What::Precision(args) => precision(args),
+        What::Precision(args) => precision::run(args),
         What::Phases(args) => phases(args),
         What::Units(args) => units(args),
         What::Compare(args) => {
@@ -247,91 +226,6 @@ fn speed(args: &Speed) -> Result<(), CliError> {
     if let Some(page) = &args.page {
         lines.push(format!("page in {}", page.display()));
     }
-    say(&lines.join("\n"))
-}
-
-fn precision(args: &Precision) -> Result<(), CliError> {
-    use bench::precision::{self, PrecisionRun, STUDIES};
-    if args.list {
-        let lines = STUDIES.iter().map(|s| format!("{:14} {}", s.name, s.about));
-        return say(&lines.collect::<Vec<_>>().join("\n"));
-    }
-    let find = |name: &String| {
-        precision::by_name(name).ok_or_else(|| {
-            let known: Vec<&str> = STUDIES.iter().map(|s| s.name).collect();
-            CliError::Usage(format!(
-                "there is no study {}; the studies are {}",
-                crate::units::quote(name),
-                known.join(", ")
-            ))
-        })
-    };
-    let chosen = if args.names.is_empty() {
-        STUDIES.iter().collect()
-    } else {
-        args.names.iter().map(find).collect::<Result<Vec<_>, _>>()?
-    };
-    let kept = args.out.join("precision.json");
-    let run: PrecisionRun = if args.only_page {
-        bench::stored(&kept)?
-    } else {
-        // What is not there, or was kept by another version, is measured anew.
-        let known = bench::stored::<PrecisionRun>(&kept).map_or(Vec::new(), |run| run.measured);
-        let stop = super::stop::on_interrupt("stopping after this measurement")?;
-        let mut display = Display::new();
-        let run = precision::measure(
-            &chosen,
-            known,
-            &stop,
-            &mut |share, what| {
-                display.show(&Progress {
-                    share,
-                    what: what.to_owned(),
-                });
-            },
-            &mut |run| bench::store(&kept, run),
-        );
-        display.bar.finish_and_clear();
-        let run = run?;
-        if stop.load(std::sync::atomic::Ordering::SeqCst) {
-            return Err(CliError::Interrupted(
-                "interrupted; what was measured is kept, the same command goes on".to_owned(),
-            ));
-        }
-        run
-    };
-    let mut lines = Vec::new();
-    for study in &chosen {
-        for s in precision::standings(study, &run).0 {
-            let error = s
-                .error
-                .map_or("-".to_owned(), |e| format!("{:.3} %", 100.0 * e));
-            lines.push(format!(
-                "{:14} {:28} x{:<5} {error:>10} {:>8.2} s {}",
-                study.name,
-                s.measured.setting,
-                s.measured.resolution,
-                s.measured.cpu,
-                if s.on_front { "front" } else { "" }
-            ));
-        }
-    }
-    if let Some(path) = &args.csv {
-        bench::write(path, &precision::csv(&run))?;
-    }
-    if let Some(path) = &args.page {
-        bench::write(path, &precision::text(&run))?;
-        for study in &STUDIES {
-            let figure = path.with_file_name(format!("precision_{}.svg", study.name));
-            let svg = precision::figure(study, &run).map_err(|why| bench::Error::Scene {
-                scene: study.name.to_owned(),
-                why,
-            })?;
-            bench::write(&figure, &svg)?;
-        }
-        lines.push(format!("page in {}", path.display()));
-    }
-    lines.push(format!("run in {}", kept.display()));
     say(&lines.join("\n"))
 }
 
