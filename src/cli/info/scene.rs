@@ -2,7 +2,7 @@
 
 use crate::cli::remarks::remarks;
 use crate::component::{Component, StaysAwake};
-use crate::material::{Law, Material, MuI};
+use crate::material::{Grains, Law, Material, MuI};
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
 use crate::solver::Scheme;
 
@@ -83,40 +83,7 @@ fn sleep(scene: &Scene, component: &Component) -> String {
 
 /// The law of a material and what is added to it.
 fn material(scene: &Scene, material: &Material) -> String {
-    let grains = &material.grains;
-    let mu_i = |law: &MuI| {
-        let growth = if law.mu_inf > 0.0 {
-            format!(", mu_inf {}", law.mu_inf)
-        } else {
-            String::new()
-        };
-        format!(
-            "mu_s {:.4} to mu_2 {:.4}, I0 {:.4}{growth}; grains of {} m and {} kg/m^3, volume fraction {} to {}",
-            law.mu_s,
-            law.mu_2,
-            law.inertial_number_scale,
-            grains.diameter,
-            grains.density,
-            grains.phi_max,
-            grains.phi_min,
-        )
-    };
-    let mut text = match &material.law {
-        Law::MuI(law) => format!("mu(I), {}", mu_i(law)),
-        Law::BarkerGray(law) => format!(
-            "Barker-Gray mu(I), {}; joined at I = {:.5}",
-            mu_i(law.high()),
-            law.joint()
-        ),
-        Law::Fluid => {
-            format!("fluid, {:.6} kg/m^3", material.rest_density())
-        }
-        Law::ConstantFriction(law) => format!(
-            "constant friction, mu {:.4}; {:.6} kg/m^3",
-            law.mu,
-            material.rest_density()
-        ),
-    };
+    let mut text = law(material);
     if material.cohesion > 0.0 {
         let name = if material.is_fluid() {
             "yield stress"
@@ -125,24 +92,11 @@ fn material(scene: &Scene, material: &Material) -> String {
         };
         text.push_str(&format!("; {name} {:.4} Pa", material.cohesion));
     }
-    let viscous = &material.viscous;
-    if viscous.is_linear() && viscous.consistency > 0.0 {
-        text.push_str(&format!("; viscosity {} Pa s", viscous.consistency));
-        if let Some(raised) = raised_viscosity(scene, material) {
-            text.push_str(&format!(
-                ", {raised:.3} where it is compressed or hardly moves (artificial_viscosity)"
-            ));
-        }
-    } else if viscous.consistency > 0.0 {
-        text.push_str(&format!(
-            "; {} Pa s^n with n = {}",
-            viscous.consistency, viscous.flow_index
-        ));
-    }
+    text.push_str(&viscosity(scene, material));
     if material.is_saturated() {
         text.push_str(&format!(
             "; saturated by {} kg/m^3: {:.6} kg/m^3 in all",
-            grains.pore_density,
+            material.grains.pore_density,
             material.rest_density()
         ));
     }
@@ -153,6 +107,58 @@ fn material(scene: &Scene, material: &Material) -> String {
         text.push_str(&format!("; bulk friction {}", material.bulk_friction));
     }
     text
+}
+
+fn law(material: &Material) -> String {
+    let density = material.rest_density();
+    match &material.law {
+        Law::MuI(law) => format!("mu(I), {}", mu_i(law, &material.grains)),
+        Law::BarkerGray(law) => format!(
+            "Barker-Gray mu(I), {}; joined at I = {:.5}",
+            mu_i(law.high(), &material.grains),
+            law.joint()
+        ),
+        Law::Fluid => format!("fluid, {density:.6} kg/m^3"),
+        Law::ConstantFriction(law) => {
+            format!("constant friction, mu {:.4}; {density:.6} kg/m^3", law.mu)
+        }
+    }
+}
+
+fn mu_i(law: &MuI, grains: &Grains) -> String {
+    let growth = if law.mu_inf > 0.0 {
+        format!(", mu_inf {}", law.mu_inf)
+    } else {
+        String::new()
+    };
+    format!(
+        "mu_s {:.4} to mu_2 {:.4}, I0 {:.4}{growth}; grains of {} m and {} kg/m^3, volume fraction {} to {}",
+        law.mu_s,
+        law.mu_2,
+        law.inertial_number_scale,
+        grains.diameter,
+        grains.density,
+        grains.phi_max,
+        grains.phi_min,
+    )
+}
+
+/// Viscous stress beside the law; nothing if there is none.
+fn viscosity(scene: &Scene, material: &Material) -> String {
+    let viscous = &material.viscous;
+    if viscous.consistency <= 0.0 {
+        return String::new();
+    }
+    if !viscous.is_linear() {
+        return format!(
+            "; {} Pa s^n with n = {}",
+            viscous.consistency, viscous.flow_index
+        );
+    }
+    let raised = raised_viscosity(scene, material).map_or(String::new(), |raised| {
+        format!(", {raised:.3} where it is compressed or hardly moves (artificial_viscosity)")
+    });
+    format!("; viscosity {} Pa s{raised}", viscous.consistency)
 }
 
 /// What a Newton's fluid's viscosity is made up to where it is compressed or hardly moves [Pa s], if that is more than its own.

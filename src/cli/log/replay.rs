@@ -85,21 +85,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             remedy: "see its topics with `sandgate log info`",
         });
     };
-    let own = topic.split('/').nth(2).unwrap_or_default();
-    let mut options = ServeOptions {
-        instance: own.to_owned(),
-        listen: args.listen.clone(),
-        connect: args.connect.clone(),
-        config: args.zenoh_config.clone().map(ZenohConfig::File),
-        allow_open_listener: args.allow_open_listener,
-        realtime_factor: None,
-        lost: None,
-        advice: Advice::CommandLine,
-    }
-    .with_metadata()?;
-    if let Some(name) = &args.instance {
-        options.instance.clone_from(name);
-    }
+    let options = args.publishing(topic)?;
     let stop = stop::on_interrupt("stopping after this message")?;
     let outlet = Outlet::open(&options, args.force)?;
     say(&format!(
@@ -130,23 +116,29 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             break;
         }
     }
-    say(&format!(
-        "published {} messages in {:.3} s, at most {:.3} ms late, the last one {:.3} ms",
-        player.published,
-        began.elapsed().as_secs_f64(),
-        player.latest.as_secs_f64() * 1e3,
-        player.last.as_secs_f64() * 1e3
-    ))?;
-    let left = player.outlet.wait_until_taken(&stop);
-    if left > 0 {
-        tell!(
-            "warning: subscribers have not taken the last {left} bytes and more of it, which are lost to them"
-        );
+    player.finish(began)
+}
+
+impl Args {
+    /// How and as whom it is published: unless told otherwise, as the component whose log has this topic.
+    fn publishing(&self, topic: &str) -> Result<ServeOptions, CliError> {
+        let own = topic.split('/').nth(2).unwrap_or_default();
+        let mut options = ServeOptions {
+            instance: own.to_owned(),
+            listen: self.listen.clone(),
+            connect: self.connect.clone(),
+            config: self.zenoh_config.clone().map(ZenohConfig::File),
+            allow_open_listener: self.allow_open_listener,
+            realtime_factor: None,
+            lost: None,
+            advice: Advice::CommandLine,
+        }
+        .with_metadata()?;
+        if let Some(name) = &self.instance {
+            options.instance.clone_from(name);
+        }
+        Ok(options)
     }
-    if let Err(open) = player.outlet.close() {
-        tell!("warning: {open}");
-    }
-    Ok(())
 }
 
 /// What viewers need of the time before the first message: the newest scene, and the newest place of each frame.
@@ -261,6 +253,27 @@ impl Player<'_> {
         let schema = &message.channel.schema.name;
         self.outlet.publish(&key, schema, message.data)?;
         self.published += 1;
+        Ok(())
+    }
+
+    /// Says what was published since it began, and waits until subscribers have it.
+    fn finish(self, began: Instant) -> Result<(), CliError> {
+        say(&format!(
+            "published {} messages in {:.3} s, at most {:.3} ms late, the last one {:.3} ms",
+            self.published,
+            began.elapsed().as_secs_f64(),
+            self.latest.as_secs_f64() * 1e3,
+            self.last.as_secs_f64() * 1e3
+        ))?;
+        let left = self.outlet.wait_until_taken(self.stop);
+        if left > 0 {
+            tell!(
+                "warning: subscribers have not taken the last {left} bytes and more of it, which are lost to them"
+            );
+        }
+        if let Err(open) = self.outlet.close() {
+            tell!("warning: {open}");
+        }
         Ok(())
     }
 }
