@@ -8,7 +8,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::library::{self, Kind};
-use super::reference::{self, Extent, manifest};
+use super::reference::{self, Extent, Reference, manifest};
 use super::slot::{self, SlotError};
 use super::{Error, FmiVersion, Platform, description, identifier, page::page, terminals};
 use crate::component::Component;
@@ -75,57 +75,20 @@ pub fn pack_with(scene: &Scene, packing: &Packing, out: &Path) -> Result<Packed,
     let binaries = binaries(scene, packing)?;
     let component = Component::new(scene)?;
     let reference = reference::reference(scene, packing.reference)?;
-    let id = identifier(scene);
-    let mut entries = Vec::new();
-    let mut add = |name: &str, bytes: &[u8]| entries.push((name.to_owned(), bytes.to_vec()));
-    add(
+    let version = packing.version;
+    let mut entries = vec![entry(
         "modelDescription.xml",
-        description(&component, packing.version).as_bytes(),
-    );
-    for (name, bytes) in &binaries {
-        add(name, bytes);
-    }
-    add("resources/scene.toml", scene.source.as_bytes());
-    add(
+        description(&component, version),
+    )];
+    entries.extend(binaries);
+    entries.push(entry("resources/scene.toml", &scene.source));
+    entries.push(entry(
         "documentation/index.html",
-        page(&component, packing.version, &reference).as_bytes(),
-    );
-    let licenses_at = "documentation/licenses";
-    add(&format!("{licenses_at}/license.txt"), licenses().as_bytes());
-    add(
-        &format!("{licenses_at}/license.spdx"),
-        concat!(env!("CARGO_PKG_LICENSE"), "\n").as_bytes(),
-    );
-    add(
-        &format!("{licenses_at}/third_party.txt"),
-        match packing.kind {
-            Kind::Plain => THIRD_PARTY.as_bytes(),
-            Kind::Zenoh => THIRD_PARTY_ZENOH.as_bytes(),
-        },
-    );
-    let extra = reference::FOLDER;
-    add(
-        &format!("{extra}/fmi-ls-manifest.xml"),
-        manifest(&id, &reference).as_bytes(),
-    );
-    add(&format!("{extra}/{id}_in.csv"), reference.inputs.as_bytes());
-    add(
-        &format!("{extra}/{id}_out.csv"),
-        reference.outputs.as_bytes(),
-    );
-    match packing.version {
-        FmiVersion::V2 => add("model.png", terminals::ICON_PNG),
-        FmiVersion::V3 => {
-            let folder = "terminalsAndIcons";
-            let document = terminals::terminals(&component);
-            add(
-                &format!("{folder}/terminalsAndIcons.xml"),
-                document.as_bytes(),
-            );
-            add(&format!("{folder}/icon.png"), terminals::ICON_PNG);
-            add(&format!("{folder}/icon.svg"), terminals::ICON_SVG);
-        }
-    }
+        page(&component, version, &reference),
+    ));
+    entries.extend(licenses(packing.kind));
+    entries.extend(reference_files(&identifier(scene), &reference));
+    entries.extend(icons(&component, version));
     let archive = archive(&entries).map_err(|source| file("write", out, source))?;
     whole_file::replace(out, &archive).map_err(|source| file("write", out, source))?;
     Ok(Packed {
@@ -134,10 +97,66 @@ pub fn pack_with(scene: &Scene, packing: &Packing, out: &Path) -> Result<Packed,
     })
 }
 
+/// Name in the archive, and bytes.
+type Entry = (String, Vec<u8>);
+
+fn entry(name: impl Into<String>, bytes: impl AsRef<[u8]>) -> Entry {
+    (name.into(), bytes.as_ref().to_vec())
+}
+
+fn licenses(kind: Kind) -> [Entry; 3] {
+    let own = format!(
+        "Sandgate {} is licensed under either of the two licences below, at your choice.\n\n\
+         ==== MIT ====\n\n{LICENSE_MIT}\n==== Apache-2.0 ====\n\n{LICENSE_APACHE}",
+        env!("CARGO_PKG_VERSION")
+    );
+    let third_party = match kind {
+        Kind::Plain => THIRD_PARTY,
+        Kind::Zenoh => THIRD_PARTY_ZENOH,
+    };
+    let folder = "documentation/licenses";
+    [
+        entry(format!("{folder}/license.txt"), own),
+        entry(
+            format!("{folder}/license.spdx"),
+            concat!(env!("CARGO_PKG_LICENSE"), "\n"),
+        ),
+        entry(format!("{folder}/third_party.txt"), third_party),
+    ]
+}
+
+fn reference_files(identifier: &str, reference: &Reference) -> [Entry; 3] {
+    let folder = reference::FOLDER;
+    [
+        entry(
+            format!("{folder}/fmi-ls-manifest.xml"),
+            manifest(identifier, reference),
+        ),
+        entry(format!("{folder}/{identifier}_in.csv"), &reference.inputs),
+        entry(format!("{folder}/{identifier}_out.csv"), &reference.outputs),
+    ]
+}
+
+/// A picture for tools, and in FMI 3 the terminals beside it.
+fn icons(component: &Component, version: FmiVersion) -> Vec<Entry> {
+    match version {
+        FmiVersion::V2 => vec![entry("model.png", terminals::ICON_PNG)],
+        FmiVersion::V3 => {
+            let folder = "terminalsAndIcons";
+            let document = terminals::terminals(component);
+            vec![
+                entry(format!("{folder}/terminalsAndIcons.xml"), document),
+                entry(format!("{folder}/icon.png"), terminals::ICON_PNG),
+                entry(format!("{folder}/icon.svg"), terminals::ICON_SVG),
+            ]
+        }
+    }
+}
+
 /// Names in the archive and bytes of the libraries, each with the scene in its slot.
-fn binaries(scene: &Scene, packing: &Packing) -> Result<Vec<(String, Vec<u8>)>, Error> {
+fn binaries(scene: &Scene, packing: &Packing) -> Result<Vec<Entry>, Error> {
     let id = identifier(scene);
-    let mut binaries: Vec<(String, Vec<u8>)> = Vec::new();
+    let mut binaries: Vec<Entry> = Vec::new();
     for library in &packing.libraries {
         let (platform, bytes) = with_scene(library, scene)?;
         let folder = platform.folder(packing.version);
@@ -182,7 +201,7 @@ fn with_scene(library: &Path, scene: &Scene) -> Result<(Platform, Vec<u8>), Erro
     }
 }
 
-fn archive(entries: &[(String, Vec<u8>)]) -> std::io::Result<Vec<u8>> {
+fn archive(entries: &[Entry]) -> std::io::Result<Vec<u8>> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, bytes) in entries {
         let executable = name.starts_with("binaries/");
@@ -194,14 +213,6 @@ fn archive(entries: &[(String, Vec<u8>)]) -> std::io::Result<Vec<u8>> {
         zip.write_all(bytes)?;
     }
     Ok(zip.finish()?.into_inner())
-}
-
-fn licenses() -> String {
-    format!(
-        "Sandgate {} is licensed under either of the two licences below, at your choice.\n\n\
-         ==== MIT ====\n\n{LICENSE_MIT}\n==== Apache-2.0 ====\n\n{LICENSE_APACHE}",
-        env!("CARGO_PKG_VERSION")
-    )
 }
 
 fn file(action: &'static str, path: &Path, source: std::io::Error) -> Error {

@@ -5,6 +5,7 @@
 //! there are.
 
 mod devices;
+mod gauges;
 mod material;
 
 pub(super) use material::COLOURS;
@@ -197,6 +198,7 @@ pub(super) fn picture(component: &Component) -> String {
     domain(&mut svg, scene);
     material::draw(&mut svg, component);
     devices::draw(&mut svg, scene);
+    gauges::draw(&mut svg, scene);
     scale_bar(&mut svg, height);
     svg.text.push_str("</svg>\n");
     svg.text

@@ -4,7 +4,7 @@
 //! Inputs are the scene's schedules, set at each communication point and held over the step. How far the results go is
 //! counted in work, not in time, so that the same scene gives the same bytes on every machine.
 
-use super::xml::{Xml, number};
+use super::xml::{Attributes, Xml, number};
 use crate::component::{Causality, Component, Error, Variable, next_point};
 use crate::scene::Scene;
 
@@ -119,65 +119,66 @@ impl Table {
 /// fmi-ls-manifest.xml: the files an importer may care for and what they are.
 pub(super) fn manifest(identifier: &str, reference: &Reference) -> String {
     let mut xml = Xml::document();
-    let text = |pairs: &[(&'static str, &str)]| {
-        pairs
-            .iter()
-            .map(|(key, value)| (*key, (*value).to_owned()))
-            .collect()
-    };
-    xml.begin(
-        "fmiReferences",
-        &text(&[
-            ("xmlns:fmi-ls", "http://fmi-standard.org/fmi-ls-manifest"),
-            ("fmi-ls:fmi-ls-name", "org.fmi-standard.fmi-ls-ref"),
-            ("fmi-ls:fmi-ls-version", "1.0.0-alpha.1"),
-            (
-                "fmi-ls:fmi-ls-description",
-                "Layered Standard providing information on related files included in an FMU.",
-            ),
-        ]),
-    );
-    let results = format!(
-        "Outputs at each communication point of the default experiment up to t = {} s",
-        number(reference.until)
-    );
-    for (kind, source, role, description) in [
+    let standard = [
+        ("xmlns:fmi-ls", "http://fmi-standard.org/fmi-ls-manifest"),
+        ("fmi-ls:fmi-ls-name", "org.fmi-standard.fmi-ls-ref"),
+        ("fmi-ls:fmi-ls-version", "1.0.0-alpha.1"),
         (
+            "fmi-ls:fmi-ls-description",
+            "Layered Standard providing information on related files included in an FMU.",
+        ),
+    ];
+    xml.begin("fmiReferences", &attributes(standard));
+    for file in related(identifier, reference.until) {
+        xml.leaf("Related", &file);
+    }
+    xml.finish()
+}
+
+fn attributes<const N: usize>(pairs: [(&'static str, &str); N]) -> Attributes {
+    let pairs = pairs.into_iter();
+    pairs.map(|(key, value)| (key, value.to_owned())).collect()
+}
+
+/// Inputs, results to that time [s], scene and page.
+fn related(identifier: &str, until: f64) -> [Attributes; 4] {
+    let file = |kind: &str, source: &str, role: &str, description: &str| {
+        attributes([
+            ("type", kind),
+            ("source", source),
+            ("role", role),
+            ("description", description),
+        ])
+    };
+    [
+        file(
             "text/csv",
-            format!("{identifier}_in.csv"),
+            &format!("{identifier}_in.csv"),
             "testcase",
             "Inputs to set at each communication point and to hold over the step",
         ),
-        (
+        file(
             "text/csv",
-            format!("{identifier}_out.csv"),
+            &format!("{identifier}_out.csv"),
             "result",
-            &results,
+            &format!(
+                "Outputs at each communication point of the default experiment up to t = {} s",
+                number(until)
+            ),
         ),
-        (
+        file(
             "application/toml",
-            "../../resources/scene.toml".to_owned(),
+            "../../resources/scene.toml",
             "model",
             "The scene that this FMU simulates, as Sandgate reads it",
         ),
-        (
+        file(
             "text/html",
-            "../../documentation/index.html".to_owned(),
+            "../../documentation/index.html",
             "document",
             "Variables, picture of the scene, how to use it",
         ),
-    ] {
-        xml.leaf(
-            "Related",
-            &text(&[
-                ("type", kind),
-                ("source", &source),
-                ("role", role),
-                ("description", description),
-            ]),
-        );
-    }
-    xml.finish()
+    ]
 }
 
 #[cfg(test)]

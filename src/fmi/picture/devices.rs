@@ -1,12 +1,7 @@
-//! Walls, gates, inflows, outflows and gauges of the drawing, each with its name.
+//! Walls, gates, inflows and outflows of the drawing, each with its name.
 
-use super::{GATE, GAUGE, INFLOW, OUTFLOW, Svg, WALL};
-use crate::scene::{
-    Dimension, ForceTarget, Gate, Gauge, GaugeKind, Inflow, Outflow, Point, Scene, WallGeometry,
-};
-
-/// Thin lines of gauges.
-const THIN: &str = "fill=\"none\" stroke-width=\"1.2\" clip-path=\"url(#domain)\"";
+use super::{GATE, INFLOW, OUTFLOW, Svg, WALL};
+use crate::scene::{Dimension, Gate, Inflow, Outflow, Point, Scene, WallGeometry};
 
 pub(super) fn draw(svg: &mut Svg<'_>, scene: &Scene) {
     for outflow in &scene.outflows {
@@ -21,21 +16,18 @@ pub(super) fn draw(svg: &mut Svg<'_>, scene: &Scene) {
     for inflow in &scene.inflows {
         draw_inflow(svg, inflow);
     }
-    for gauge in &scene.gauges {
-        draw_gauge(svg, gauge, scene);
-    }
 }
 
-fn plus(a: Point, b: Point, factor: f64) -> Point {
+pub(super) fn plus(a: Point, b: Point, factor: f64) -> Point {
     [0, 1, 2].map(|k| a[k] + factor * b[k])
 }
 
-fn middle(a: Point, b: Point) -> Point {
+pub(super) fn middle(a: Point, b: Point) -> Point {
     [0, 1, 2].map(|k| 0.5 * (a[k] + b[k]))
 }
 
 /// Corners of a face from `from` to `to`, extruded along `span` in space.
-fn face(svg: &Svg<'_>, from: Point, to: Point, span: Point) -> Vec<(f64, f64)> {
+pub(super) fn face(svg: &Svg<'_>, from: Point, to: Point, span: Point) -> Vec<(f64, f64)> {
     [from, to, plus(to, span, 1.0), plus(from, span, 1.0)]
         .map(|corner| svg.view.place(corner))
         .to_vec()
@@ -137,118 +129,4 @@ fn draw_inflow(svg: &mut Svg<'_>, inflow: &Inflow) {
         INFLOW,
         &format!("inflow {}", inflow.name),
     );
-}
-
-fn draw_gauge(svg: &mut Svg<'_>, gauge: &Gauge, scene: &Scene) {
-    let view = svg.view;
-    let style = format!("{THIN} stroke=\"{GAUGE}\"");
-    let title = |what: &str| format!("gauge {}: {what}", gauge.name);
-    let at = match &gauge.kind {
-        GaugeKind::Depth { foot, up, length } | GaugeKind::InterfaceStress { foot, up, length } => {
-            let ends = [*foot, plus(*foot, *up, *length)].map(|end| view.place(end));
-            let what = match gauge.kind {
-                GaugeKind::Depth { .. } => "depth",
-                _ => "stress of the interface",
-            };
-            svg.line(
-                &ends,
-                false,
-                &style,
-                &title(&format!("{what} along this line")),
-            );
-            dot(svg, ends[0], &title(&format!("foot of the {what}")));
-            // Beside the line rather than on the bed, where walls and gates have their names.
-            (
-                ends[0].0,
-                ends[0].1 - 0.3 * (ends[0].1 - ends[1].1).clamp(-200.0, 200.0),
-            )
-        }
-        GaugeKind::Profile {
-            from,
-            to,
-            count,
-            up,
-            length,
-        } => {
-            let way: Point = [0, 1, 2].map(|k| to[k] - from[k]);
-            for k in 0..*count {
-                let foot = plus(*from, way, k as f64 / (*count - 1).max(1) as f64);
-                let ends = [foot, plus(foot, *up, *length)].map(|end| view.place(end));
-                let style = format!("{style} stroke-opacity=\"0.4\"");
-                let what = format!("depth {} of {count}", k + 1);
-                svg.line(&ends, false, &style, &title(&what));
-            }
-            view.place(*from)
-        }
-        GaugeKind::Discharge { from, to, span } => {
-            let corners = face(svg, *from, *to, *span);
-            let style = format!("{style} stroke-dasharray=\"1 3\"");
-            svg.line(
-                &corners,
-                true,
-                &style,
-                &title("discharge through this section"),
-            );
-            corners[1]
-        }
-        GaugeKind::Force { on } => {
-            let (what, at) = match on {
-                ForceTarget::Wall(i) => (
-                    format!("wall {}", scene.walls[*i].name),
-                    on_wall(&scene.walls[*i].geometry),
-                ),
-                ForceTarget::Gate(i) => (
-                    format!("gate {}", scene.gates[*i].name),
-                    scene.gates[*i].from,
-                ),
-            };
-            let at = view.place(at);
-            dot(svg, at, &title(&format!("force on {what}")));
-            (at.0, at.1 + 32.0)
-        }
-        GaugeKind::Pressure { at, .. } => {
-            let at = view.place(*at);
-            dot(svg, at, &title("pressure at this point"));
-            at
-        }
-        GaugeKind::Mass { lower, upper } => {
-            let corner = |x: f64, y: f64| view.place([x, y, lower[2]]);
-            let corners = [
-                corner(lower[0], lower[1]),
-                corner(upper[0], lower[1]),
-                corner(upper[0], upper[1]),
-                corner(lower[0], upper[1]),
-            ];
-            svg.line(&corners, true, &style, &title("mass in this box"));
-            corners[0]
-        }
-        GaugeKind::Front {
-            origin, direction, ..
-        } => {
-            let at = view.place(*origin);
-            if let Some(towards) = view.direction(*direction) {
-                svg.arrow(at, towards, 26.0, GAUGE, &title("front, counted from here"));
-            } else {
-                dot(svg, at, &title("front, counted from here"));
-            }
-            (at.0, at.1 + 18.0)
-        }
-    };
-    svg.words(at, GAUGE, &gauge.name);
-}
-
-/// A point of a wall to put a name at.
-fn on_wall(geometry: &WallGeometry) -> Point {
-    match geometry {
-        WallGeometry::Polyline { points, .. } => points
-            .first()
-            .map_or([0.0; 3], |corner| [corner[0], corner[1], 0.0]),
-        WallGeometry::Box { lower, upper } => middle(*lower, *upper),
-        WallGeometry::Plane { point, .. } => *point,
-    }
-}
-
-fn dot(svg: &mut Svg<'_>, (x, y): (f64, f64), title: &str) {
-    let attributes = format!("cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"{GAUGE}\"");
-    svg.shape("circle", &attributes, title);
 }
