@@ -16,6 +16,7 @@ use super::raw::{RawEntry, RawMessage, RawReader};
 use super::read::{Body, decode};
 use crate::component::{Component, Mode, StepReport};
 use crate::wire::convert::{self, Output};
+use crate::wire::foxglove::SceneUpdate;
 use crate::wire::messages::Gauge;
 use crate::wire::picture;
 use start::Start;
@@ -132,14 +133,7 @@ impl Run {
             }
             Body::Scene(update) => {
                 self.done.compared += 1;
-                let mut own = picture::scene_update(component.scene(), component.time());
-                if component.mode() == Mode::Instantiated {
-                    // Drawn at the start time, which this component is told of next.
-                    for (own, logged) in own.entities.iter_mut().zip(&update.entities) {
-                        own.timestamp.clone_from(&logged.timestamp);
-                    }
-                }
-                (own != update).then(|| ("scene".to_owned(), "it is drawn otherwise".to_owned()))
+                drawn_otherwise(&update, component)
             }
             Body::Command(_) | Body::Log(_) | Body::Other { .. } => None,
         };
@@ -191,4 +185,15 @@ impl Run {
         }
         Ok(self.done)
     }
+}
+
+fn drawn_otherwise(logged: &SceneUpdate, component: &Component) -> Option<(String, String)> {
+    let mut own = picture::scene_update(component.scene(), component.time());
+    if component.mode() == Mode::Instantiated {
+        // Drawn at the start time, which this component is told of next.
+        for (own, logged) in own.entities.iter_mut().zip(&logged.entities) {
+            own.timestamp.clone_from(&logged.timestamp);
+        }
+    }
+    (own != *logged).then(|| ("scene".to_owned(), "it is drawn otherwise".to_owned()))
 }

@@ -128,57 +128,11 @@ impl Artist<'_> {
     fn gauge(&self, gauge: &Gauge) -> SceneEntity {
         let name = format!("gauge.{}", gauge.name);
         let mut entity = self.entity(name.clone(), WORLD.to_owned());
-        let end = |foot: Point, up: Point, length: f64| -> Point {
-            (V3::from(foot) + length * V3::from(up)).into()
-        };
-        let (corners, label_at): (Vec<Point>, Option<Point>) = match &gauge.kind {
-            GaugeKind::Depth { foot, up, length }
-            | GaugeKind::InterfaceStress { foot, up, length } => {
-                (vec![*foot, end(*foot, *up, *length)], Some(*foot))
-            }
-            GaugeKind::Profile {
-                from,
-                to,
-                up,
-                length,
-                ..
-            } => (
-                vec![
-                    *from,
-                    *to,
-                    end(*to, *up, *length),
-                    end(*from, *up, *length),
-                    *from,
-                ],
-                Some(*from),
-            ),
-            GaugeKind::Discharge { from, to, span } => (self.face(*from, *to, *span), Some(*from)),
-            GaugeKind::Pressure { at, .. } => (Vec::new(), Some(*at)),
-            GaugeKind::Front {
-                origin, direction, ..
-            } => {
-                let step = 4.0 * self.scene.numerics.spacing;
-                (vec![*origin, end(*origin, *direction, step)], Some(*origin))
-            }
-            GaugeKind::Mass { lower, upper } => {
-                let [l, u] = [*lower, *upper];
-                let corner = |x, y| [x, y, l[2]];
-                let around = vec![
-                    corner(l[0], l[1]),
-                    corner(u[0], l[1]),
-                    corner(u[0], u[1]),
-                    corner(l[0], u[1]),
-                    corner(l[0], l[1]),
-                ];
-                (around, Some(*lower))
-            }
-            // A force gauge is on a wall or gate that is drawn already.
-            GaugeKind::Force { .. } => (Vec::new(), None),
-        };
+        let corners = self.gauge_line(&gauge.kind);
         if !corners.is_empty() {
             entity.lines.push(self.line(&corners, GAUGE));
         }
-        if let Some(at) = label_at {
+        if let Some(at) = label_at(&gauge.kind) {
             entity.texts.push(TextPrimitive {
                 pose: Some(pose(at, IDENTITY)),
                 billboard: true,
@@ -189,6 +143,51 @@ impl Artist<'_> {
             });
         }
         entity
+    }
+
+    /// Where it measures; nothing for a point, and for a force, which is on a wall or gate that is drawn already.
+    fn gauge_line(&self, kind: &GaugeKind) -> Vec<Point> {
+        let end = |foot: Point, up: Point, length: f64| -> Point {
+            (V3::from(foot) + length * V3::from(up)).into()
+        };
+        match kind {
+            GaugeKind::Depth { foot, up, length }
+            | GaugeKind::InterfaceStress { foot, up, length } => {
+                vec![*foot, end(*foot, *up, *length)]
+            }
+            GaugeKind::Profile {
+                from,
+                to,
+                up,
+                length,
+                ..
+            } => vec![
+                *from,
+                *to,
+                end(*to, *up, *length),
+                end(*from, *up, *length),
+                *from,
+            ],
+            GaugeKind::Discharge { from, to, span } => self.face(*from, *to, *span),
+            GaugeKind::Front {
+                origin, direction, ..
+            } => {
+                let step = 4.0 * self.scene.numerics.spacing;
+                vec![*origin, end(*origin, *direction, step)]
+            }
+            GaugeKind::Mass { lower, upper } => {
+                let [l, u] = [*lower, *upper];
+                let corner = |x, y| [x, y, l[2]];
+                vec![
+                    corner(l[0], l[1]),
+                    corner(u[0], l[1]),
+                    corner(u[0], u[1]),
+                    corner(l[0], u[1]),
+                    corner(l[0], l[1]),
+                ]
+            }
+            GaugeKind::Pressure { .. } | GaugeKind::Force { .. } => Vec::new(),
+        }
     }
 
     /// Two pixels wide whatever the scale.
@@ -263,6 +262,18 @@ impl Artist<'_> {
                 at(-1.0, -1.0),
             ]
         }
+    }
+}
+
+/// Where a gauge's name stands; none for a force, which is on a wall or gate.
+fn label_at(kind: &GaugeKind) -> Option<Point> {
+    match kind {
+        GaugeKind::Depth { foot, .. } | GaugeKind::InterfaceStress { foot, .. } => Some(*foot),
+        GaugeKind::Profile { from, .. } | GaugeKind::Discharge { from, .. } => Some(*from),
+        GaugeKind::Pressure { at, .. } => Some(*at),
+        GaugeKind::Front { origin, .. } => Some(*origin),
+        GaugeKind::Mass { lower, .. } => Some(*lower),
+        GaugeKind::Force { .. } => None,
     }
 }
 

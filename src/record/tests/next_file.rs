@@ -4,12 +4,37 @@ use super::*;
 use crate::component::Component;
 use crate::record::place::Place;
 use crate::record::{RecordError, RecordOptions, Recorder};
+use crate::scene::Scene;
 use crate::wire::messages::AppliedEvent;
+
+fn silo() -> Scene {
+    let text = include_str!("../../../tests/scenes/small_silo.toml");
+    crate::scene::parse("small_silo.toml", text).unwrap()
+}
+
+fn step(component: &mut Component, recorder: &mut Recorder) -> Result<(), RecordError> {
+    let t = component.time();
+    let report = component.do_step(t, 0.005).unwrap();
+    recorder.record_step(component, &report, t, 0.005, "test")
+}
+
+/// Communication points in a log that is complete.
+fn points(path: &Path) -> usize {
+    let (entries, ending) = read(path);
+    assert_eq!(ending, Ending::Complete);
+    let points = entries.iter().filter(|entry| {
+        let body = match entry {
+            Entry::Message { body, .. } => body,
+            _ => return false,
+        };
+        matches!(body, Body::Stats(_))
+    });
+    points.count()
+}
 
 #[test]
 fn what_a_file_lacks_is_not_forgotten_when_the_next_one_begins() {
-    let text = include_str!("../../../tests/scenes/small_silo.toml");
-    let scene = crate::scene::parse("small_silo.toml", text).unwrap();
+    let scene = silo();
     for jumps in [false, true] {
         let folder = temp_dir::TempDir::new().unwrap();
         let mut component = Component::new(&scene).unwrap();
@@ -31,10 +56,7 @@ fn what_a_file_lacks_is_not_forgotten_when_the_next_one_begins() {
         });
         recorder.keep(trouble);
         *disk.room.lock().unwrap() = 0;
-        let report = component.do_step(0.0, 0.005).unwrap();
-        recorder
-            .record_step(&component, &report, 0.0, 0.005, "test")
-            .unwrap();
+        step(&mut component, &mut recorder).unwrap();
         if jumps {
             component.reset().unwrap();
             recorder
@@ -60,8 +82,7 @@ fn what_a_file_lacks_is_not_forgotten_when_the_next_one_begins() {
 
 #[test]
 fn a_log_that_cannot_go_on_in_a_next_file_ends_whole() {
-    let text = include_str!("../../../tests/scenes/small_silo.toml");
-    let scene = crate::scene::parse("small_silo.toml", text).unwrap();
+    let scene = silo();
     for (jumps, required) in [(false, false), (true, false), (false, true), (true, true)] {
         let folder = temp_dir::TempDir::new().unwrap();
         let taken = match jumps {
@@ -81,11 +102,6 @@ fn a_log_that_cannot_go_on_in_a_next_file_ends_whole() {
         recorder
             .record_initialization(&component, 0.0, None, "test")
             .unwrap();
-        let step = |component: &mut Component, recorder: &mut Recorder| {
-            let t = component.time();
-            let report = component.do_step(t, 0.005).unwrap();
-            recorder.record_step(component, &report, t, 0.005, "test")
-        };
         step(&mut component, &mut recorder).unwrap();
         let told = if jumps {
             component.reset().unwrap();
@@ -108,18 +124,10 @@ fn a_log_that_cannot_go_on_in_a_next_file_ends_whole() {
             true => "silo.mcap",
             false => "silo-0-0000.mcap",
         };
-        let (entries, ending) = read(&folder.path().join(whole));
-        assert_eq!(ending, Ending::Complete);
-        let points = entries.iter().filter(|entry| {
-            let body = match entry {
-                Entry::Message { body, .. } => body,
-                _ => return false,
-            };
-            matches!(body, Body::Stats(_))
-        });
-        assert_eq!(points.count(), if jumps { 2 } else { 3 });
+        let whole = folder.path().join(whole);
+        assert_eq!(points(&whole), if jumps { 2 } else { 3 });
         if let Ok(finished) = finished {
-            assert_eq!(finished.path, Some(folder.path().join(whole)));
+            assert_eq!(finished.path, Some(whole));
             assert!(finished.dropped > 0 && finished.failure.is_some());
         }
         assert_eq!(
