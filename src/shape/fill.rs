@@ -29,35 +29,15 @@ pub fn lattice(
     dimensions: usize,
     staggered: bool,
 ) -> Lattice {
-    let (mut lower, mut upper) = shape.bounds();
-    if let Some((up, height)) = level {
-        for k in 0..3 {
-            if up[k] > 0.0 {
-                upper[k] = upper[k].min(height);
-            } else if up[k] < 0.0 {
-                lower[k] = lower[k].max(-height);
-            }
-        }
-    }
+    let (mut lower, upper) = bounds_below(shape, level);
     let exact = matches!(shape, Shape::Box { .. });
     if !exact {
         // Of rows below the level's nothing is left.
         lower[..dimensions].copy_from_slice(&start[..dimensions]);
     }
-    let mut count = [1usize; 3];
-    let mut step = [0.0; 3];
+    let (mut count, mut step) = ([1usize; 3], [0.0; 3]);
     for k in 0..dimensions {
-        let rows = ((upper[k] - lower[k]) / spacing).round().max(1.0);
-        count[k] = if exact {
-            rows as usize
-        } else {
-            ((upper[k] - lower[k]) / spacing).ceil().max(1.0) as usize
-        };
-        step[k] = if exact {
-            (upper[k] - lower[k]) / rows
-        } else {
-            spacing
-        };
+        (count[k], step[k]) = rows(upper[k] - lower[k], spacing, exact);
     }
     let last = dimensions - 1;
     // Counted from the origin, so that rows of bodies side by side go on.
@@ -94,5 +74,30 @@ pub fn lattice(
     Lattice {
         points,
         cell_volume: step[..dimensions].iter().product(),
+    }
+}
+
+/// The shape's bounds, but for what lies above a level.
+fn bounds_below(shape: &Shape, level: Option<(Vector<3>, f64)>) -> (Vector<3>, Vector<3>) {
+    let (mut lower, mut upper) = shape.bounds();
+    if let Some((up, height)) = level {
+        for k in 0..3 {
+            if up[k] > 0.0 {
+                upper[k] = upper[k].min(height);
+            } else if up[k] < 0.0 {
+                lower[k] = lower[k].max(-height);
+            }
+        }
+    }
+    (lower, upper)
+}
+
+/// How many rows an axis has, and their distance: stretched to a whole number if `exact`, else as many as cover it.
+fn rows(extent: f64, spacing: f64, exact: bool) -> (usize, f64) {
+    if exact {
+        let rows = (extent / spacing).round().max(1.0);
+        (rows as usize, extent / rows)
+    } else {
+        ((extent / spacing).ceil().max(1.0) as usize, spacing)
     }
 }

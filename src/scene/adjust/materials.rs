@@ -1,6 +1,6 @@
 //! Values of materials worth calibrating: friction, grain size, cohesion, and what a fluid or a saturated bed flows by.
 
-use super::super::lift;
+use super::super::lift::{self, FrictionKeys, friction_keys};
 use super::super::raw::{
     Angle, At, CONSISTENCIES, DENSITIES, Density, FLOW_INDICES, FRICTION_ANGLES, GRAIN_DIAMETERS,
     GRANULAR_ANGLES, Length, Place, Pressure, Ratio, RawConstantFriction, RawFluid, RawMaterial,
@@ -113,6 +113,45 @@ impl Rows<'_> {
         );
     }
 
+    /// Laws that are made from mu(I).
+    fn mu_i(&mut self, keys: &FrictionKeys<'_>, cohesion: &Option<At<Pressure>>) {
+        let preset = keys.preset.as_ref().map(|p| lift::preset_values(p.value));
+        let angle = |at: &Option<At<Angle>>, mu: Option<f64>| {
+            at.as_ref().map(|a| a.value.0).or(mu.map(f64::atan))
+        };
+        self.add(
+            "static_friction_angle",
+            "friction angle at vanishing shear rate, tan of it is mu_s,",
+            MaterialKey::StaticAngle,
+            angle(keys.static_friction_angle, preset.map(|(law, _)| law.mu_s)),
+            (LEAST_ANGLE, GRANULAR_ANGLES.ends().1),
+        );
+        self.add(
+            "dynamic_friction_angle",
+            "friction angle at large shear rate, tan of it is mu_2, not below the static one,",
+            MaterialKey::DynamicAngle,
+            angle(keys.dynamic_friction_angle, preset.map(|(law, _)| law.mu_2)),
+            (LEAST_ANGLE, GRANULAR_ANGLES.ends().1),
+        );
+        let scale = keys.inertial_number_scale.as_ref().map(|s| s.value.0);
+        self.add(
+            "inertial_number_scale",
+            "inertial number I0 at which friction is half way between its two values,",
+            MaterialKey::InertialScale,
+            scale.or(preset.map(|(law, _)| law.inertial_number_scale)),
+            (1e-3, 1e3),
+        );
+        let diameter = keys.grain_diameter.as_ref().map(|d| d.value.0);
+        self.add(
+            "grain_diameter",
+            "grain diameter",
+            MaterialKey::Diameter,
+            diameter.or(preset.map(|(_, grains)| grains.diameter)),
+            (LEAST_DIAMETER, GRAIN_DIAMETERS.ends().1),
+        );
+        self.cohesion(cohesion.as_ref());
+    }
+
     fn fluid(&mut self, raw: &RawFluid) {
         let preset = lift::fluid_preset(raw);
         self.density(
@@ -164,61 +203,12 @@ pub(super) fn list(i: usize, name: &str, material: &RawMaterial, list: &mut Vec<
         index: i,
         list,
     };
-    let (preset, statically, dynamically, scale, diameter, cohesion) = match material {
-        RawMaterial::MuI(m) => (
-            &m.preset,
-            &m.static_friction_angle,
-            &m.dynamic_friction_angle,
-            &m.inertial_number_scale,
-            &m.grain_diameter,
-            &m.cohesion,
-        ),
-        RawMaterial::BarkerGray(m) => (
-            &m.preset,
-            &m.static_friction_angle,
-            &m.dynamic_friction_angle,
-            &m.inertial_number_scale,
-            &m.grain_diameter,
-            &m.cohesion,
-        ),
-        RawMaterial::ConstantFriction(m) => return rows.constant_friction(m),
-        RawMaterial::Fluid(m) => return rows.fluid(m),
-    };
-    let preset = preset.as_ref().map(|p| lift::preset_values(p.value));
-    let angle = |at: &Option<At<Angle>>, mu: Option<f64>| {
-        at.as_ref().map(|a| a.value.0).or(mu.map(f64::atan))
-    };
-    rows.add(
-        "static_friction_angle",
-        "friction angle at vanishing shear rate, tan of it is mu_s,",
-        MaterialKey::StaticAngle,
-        angle(statically, preset.map(|(law, _)| law.mu_s)),
-        (LEAST_ANGLE, GRANULAR_ANGLES.ends().1),
-    );
-    rows.add(
-        "dynamic_friction_angle",
-        "friction angle at large shear rate, tan of it is mu_2, not below the static one,",
-        MaterialKey::DynamicAngle,
-        angle(dynamically, preset.map(|(law, _)| law.mu_2)),
-        (LEAST_ANGLE, GRANULAR_ANGLES.ends().1),
-    );
-    let scale = scale.as_ref().map(|s| s.value.0);
-    rows.add(
-        "inertial_number_scale",
-        "inertial number I0 at which friction is half way between its two values,",
-        MaterialKey::InertialScale,
-        scale.or(preset.map(|(law, _)| law.inertial_number_scale)),
-        (1e-3, 1e3),
-    );
-    let diameter = diameter.as_ref().map(|d| d.value.0);
-    rows.add(
-        "grain_diameter",
-        "grain diameter",
-        MaterialKey::Diameter,
-        diameter.or(preset.map(|(_, grains)| grains.diameter)),
-        (LEAST_DIAMETER, GRAIN_DIAMETERS.ends().1),
-    );
-    rows.cohesion(cohesion.as_ref());
+    match material {
+        RawMaterial::MuI(m) => rows.mu_i(&friction_keys!(m), &m.cohesion),
+        RawMaterial::BarkerGray(m) => rows.mu_i(&friction_keys!(m), &m.cohesion),
+        RawMaterial::ConstantFriction(m) => rows.constant_friction(m),
+        RawMaterial::Fluid(m) => rows.fluid(m),
+    }
 }
 
 /// Puts a value of a material.

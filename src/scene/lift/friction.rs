@@ -5,17 +5,17 @@ use crate::material::{Grains, Law, Material, MuI};
 use crate::scene::raw::{Angle, At, Density, Length, Place, Preset, Ratio};
 
 /// The keys of laws that are made from mu(I).
-pub(super) struct FrictionKeys<'a> {
-    pub(super) given: &'a [&'static str],
-    pub(super) preset: &'a Option<At<Preset>>,
-    pub(super) static_friction_angle: &'a Option<At<Angle>>,
-    pub(super) dynamic_friction_angle: &'a Option<At<Angle>>,
-    pub(super) inertial_number_scale: &'a Option<At<Ratio>>,
-    pub(super) high_inertia_friction: &'a Option<At<Ratio>>,
-    pub(super) grain_diameter: &'a Option<At<Length>>,
-    pub(super) grain_density: &'a Option<At<Density>>,
-    pub(super) phi_max: &'a Option<At<Ratio>>,
-    pub(super) phi_min: &'a Option<At<Ratio>>,
+pub(in crate::scene) struct FrictionKeys<'a> {
+    pub(in crate::scene) given: &'a [&'static str],
+    pub(in crate::scene) preset: &'a Option<At<Preset>>,
+    pub(in crate::scene) static_friction_angle: &'a Option<At<Angle>>,
+    pub(in crate::scene) dynamic_friction_angle: &'a Option<At<Angle>>,
+    pub(in crate::scene) inertial_number_scale: &'a Option<At<Ratio>>,
+    pub(in crate::scene) high_inertia_friction: &'a Option<At<Ratio>>,
+    pub(in crate::scene) grain_diameter: &'a Option<At<Length>>,
+    pub(in crate::scene) grain_density: &'a Option<At<Density>>,
+    pub(in crate::scene) phi_max: &'a Option<At<Ratio>>,
+    pub(in crate::scene) phi_min: &'a Option<At<Ratio>>,
 }
 
 macro_rules! friction_keys {
@@ -34,7 +34,7 @@ macro_rules! friction_keys {
         }
     };
 }
-pub(super) use friction_keys;
+pub(in crate::scene) use friction_keys;
 
 impl FrictionKeys<'_> {
     /// Whether the preset is this one.
@@ -61,71 +61,73 @@ impl Lift<'_> {
         table: &Place,
         keys: &FrictionKeys<'_>,
     ) -> Option<(MuI, Grains)> {
-        let preset = keys.preset.as_ref().map(|p| values(p.value));
-        let (law, grains) = (preset.map(|p| p.0), preset.map(|p| p.1));
-        let mut value = |key: &'static str, given: Option<f64>, from: Option<f64>| {
-            let value = given.or(from);
-            // A parameter or preset that is there but could not be read has been reported.
-            let reported = keys.given.contains(&key) || keys.given.contains(&"preset");
-            if value.is_none() && !reported {
-                self.report_missing_parameter(table, key);
-            }
-            value
-        };
-        let tan = |a: &At<Angle>| a.value.0.tan();
-        let mu_s = value(
-            "static_friction_angle",
-            keys.static_friction_angle.as_ref().map(tan),
-            law.map(|law| law.mu_s),
-        );
-        let mu_2 = value(
-            "dynamic_friction_angle",
-            keys.dynamic_friction_angle.as_ref().map(tan),
-            law.map(|law| law.mu_2),
-        );
-        let inertial_number_scale = value(
-            "inertial_number_scale",
-            keys.inertial_number_scale.as_ref().map(|v| v.value.0),
-            law.map(|law| law.inertial_number_scale),
-        );
-        let diameter = value(
-            "grain_diameter",
-            keys.grain_diameter.as_ref().map(|v| v.value.0),
-            grains.map(|g| g.diameter),
-        );
-        let density = value(
-            "grain_density",
-            keys.grain_density.as_ref().map(|v| v.value.0),
-            grains.map(|g| g.density),
-        );
-        // Without a preset: the dense regime of [A], section 2.
-        let phi_max = keys.phi_max.as_ref().map(|v| v.value.0);
-        let phi_min = keys.phi_min.as_ref().map(|v| v.value.0);
-        let law = MuI {
-            mu_s: mu_s?,
-            mu_2: mu_2?,
-            inertial_number_scale: inertial_number_scale?,
-            mu_inf: keys.high_inertia_friction.as_ref()?.value.0,
-        };
-        let grains = Grains {
-            diameter: diameter?,
-            density: density?,
-            phi_max: phi_max.or(grains.map(|g| g.phi_max)).unwrap_or(0.6),
-            phi_min: phi_min.or(grains.map(|g| g.phi_min)).unwrap_or(0.5),
-            pore_density: 0.0,
-        };
+        let law = self.friction_law(table, keys);
+        let grains = self.grains(table, keys);
+        let (law, grains) = (law?, grains?);
         let angles = self.check_friction_order(table, keys, &law);
         let fractions = self.check_fraction_order(table, keys, &grains);
         (angles && fractions).then_some((law, grains))
     }
 
-    fn report_missing_parameter(&mut self, table: &Place, key: &str) {
-        self.problems.report(
-            &table.child(key),
-            "nothing, and no preset",
-            "every parameter, or a preset to take the others from",
-            format!("add {key}, or preset = \"glass_beads\""),
-        );
+    fn friction_law(&mut self, table: &Place, keys: &FrictionKeys<'_>) -> Option<MuI> {
+        let preset = keys.preset.as_ref().map(|p| values(p.value).0);
+        let tan = |a: &At<Angle>| a.value.0.tan();
+        let mu_s = keys.static_friction_angle.as_ref().map(tan);
+        let mu_s = mu_s.or(preset.map(|law| law.mu_s));
+        let mu_s = self.parameter(table, keys, "static_friction_angle", mu_s);
+        let mu_2 = keys.dynamic_friction_angle.as_ref().map(tan);
+        let mu_2 = mu_2.or(preset.map(|law| law.mu_2));
+        let mu_2 = self.parameter(table, keys, "dynamic_friction_angle", mu_2);
+        let scale = keys.inertial_number_scale.as_ref().map(|v| v.value.0);
+        let scale = scale.or(preset.map(|law| law.inertial_number_scale));
+        let scale = self.parameter(table, keys, "inertial_number_scale", scale);
+        Some(MuI {
+            mu_s: mu_s?,
+            mu_2: mu_2?,
+            inertial_number_scale: scale?,
+            mu_inf: keys.high_inertia_friction.as_ref()?.value.0,
+        })
+    }
+
+    fn grains(&mut self, table: &Place, keys: &FrictionKeys<'_>) -> Option<Grains> {
+        let preset = keys.preset.as_ref().map(|p| values(p.value).1);
+        let diameter = keys.grain_diameter.as_ref().map(|v| v.value.0);
+        let diameter = diameter.or(preset.map(|grains| grains.diameter));
+        let diameter = self.parameter(table, keys, "grain_diameter", diameter);
+        let density = keys.grain_density.as_ref().map(|v| v.value.0);
+        let density = density.or(preset.map(|grains| grains.density));
+        let density = self.parameter(table, keys, "grain_density", density);
+        // Without a preset: the dense regime of [A], section 2.
+        let phi_max = keys.phi_max.as_ref().map(|v| v.value.0);
+        let phi_min = keys.phi_min.as_ref().map(|v| v.value.0);
+        Some(Grains {
+            diameter: diameter?,
+            density: density?,
+            phi_max: phi_max.or(preset.map(|g| g.phi_max)).unwrap_or(0.6),
+            phi_min: phi_min.or(preset.map(|g| g.phi_min)).unwrap_or(0.5),
+            pore_density: 0.0,
+        })
+    }
+
+    /// A parameter that is given, or a preset's; that there is none is reported.
+    fn parameter(
+        &mut self,
+        table: &Place,
+        keys: &FrictionKeys<'_>,
+        key: &'static str,
+        value: Option<f64>,
+    ) -> Option<f64> {
+        // A parameter or preset that is there but could not be read has been reported.
+        let reported = keys.given.contains(&key) || keys.given.contains(&"preset");
+        if value.is_none() && !reported {
+            self.problems.report(
+                &table.child(key),
+                "nothing, and no preset",
+                "every parameter, or a preset to take the others from",
+                format!("add {key}, or preset = \"glass_beads\""),
+            );
+        }
+        value
     }
 
     /// Friction grows with the shear rate.

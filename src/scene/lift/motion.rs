@@ -115,7 +115,18 @@ impl Lift<'_> {
             }
             return None;
         };
-        let axis = match (raw.axis, self.planar()) {
+        let axis = self.axis(raw, &rate.place);
+        let centre = self.vector(centre);
+        Some(Some(Rotation {
+            rate: rate.value.0,
+            centre: centre?,
+            axis: axis?,
+        }))
+    }
+
+    /// About what it turns: in the plane about z.
+    fn axis(&mut self, raw: &Turning, rate: &Place) -> Option<Point> {
+        match (raw.axis, self.planar()) {
             (None, true) => Some([0.0, 0.0, 1.0]),
             (Some(axis), false) => self.direction(axis),
             (Some(axis), true) => {
@@ -130,7 +141,7 @@ impl Lift<'_> {
             (None, false) => {
                 if !raw.given.contains(&"axis") {
                     self.problems.report(
-                        &rate.place,
+                        rate,
                         "angular_velocity without an axis",
                         "in space angular_velocity beside the axis of rotation",
                         "add for example axis = [0, 0, 1]",
@@ -138,13 +149,7 @@ impl Lift<'_> {
                 }
                 None
             }
-        };
-        let centre = self.vector(centre);
-        Some(Some(Rotation {
-            rate: rate.value.0,
-            centre: centre?,
-            axis: axis?,
-        }))
+        }
     }
 
     /// A plane fills the domain's section, so that it can move along its normal only; rings move along the axis.

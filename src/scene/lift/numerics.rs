@@ -49,17 +49,7 @@ impl Lift<'_> {
                 None => GATE * self.time_scale(sound_speed?),
             },
             strain_relaxation_time: raw.strain_relaxation_time.as_ref()?.value.0,
-            pair_viscosity_share: match &raw.pair_viscosity_share {
-                Some(given) => given.value.0,
-                None if materials
-                    .iter()
-                    .flatten()
-                    .all(|m| m.material.is_newtonian()) =>
-                {
-                    0.5
-                }
-                None => 0.05,
-            },
+            pair_viscosity_share: pair_viscosity_share(raw, materials),
             rotation: match raw.rotation.as_ref()?.value {
                 RotationWord::Cohesive => Rotation::Cohesive,
                 RotationWord::All => Rotation::All,
@@ -207,6 +197,19 @@ impl Lift<'_> {
             }
         });
         Some(cells.product())
+    }
+}
+
+/// What is given; else more where all that flows is a Newton's fluid.
+fn pair_viscosity_share(raw: &RawNumerics, materials: &[Option<NamedMaterial>]) -> f64 {
+    if let Some(given) = &raw.pair_viscosity_share {
+        return given.value.0;
+    }
+    let mut materials = materials.iter().flatten();
+    if materials.all(|m| m.material.is_newtonian()) {
+        0.5
+    } else {
+        0.05
     }
 }
 

@@ -1,7 +1,7 @@
 //! Layers that start in steady flow down a slope.
 
 use super::Lift;
-use crate::material::{Bagnold, Friction};
+use crate::material::{Bagnold, Friction, Material};
 use crate::math::dot;
 use crate::scene::types::{Body, NamedMaterial, VelocityProfile};
 
@@ -48,19 +48,9 @@ impl Lift<'_> {
             if across > 0.0 && Bagnold::new(material, 1.0, across, along).is_some() {
                 continue;
             }
-            let degrees = |tan: f64| format!("{:.2} deg", tan.atan().to_degrees());
-            let found = if material.is_saturated() {
-                "grains with a pore_fluid".to_owned()
-            } else if material.cohesion != 0.0 {
-                "grains with cohesion".to_owned()
-            } else if across > 0.0 {
-                format!("a slope of {}", degrees(along / across))
-            } else {
-                "no gravity".to_owned()
-            };
             self.problems.report(
                 &at.place,
-                found,
+                unsteady(material, across, along),
                 format!(
                     "a slope steeper than the angle of rest of {}, {}, at which its friction balances the weight; no cohesion and no pore_fluid",
                     named.name,
@@ -70,4 +60,21 @@ impl Lift<'_> {
             );
         }
     }
+}
+
+/// Why a layer has no steady flow, under gravity across the bed and along it [m/s^2].
+fn unsteady(material: &Material, across: f64, along: f64) -> String {
+    if material.is_saturated() {
+        "grains with a pore_fluid".to_owned()
+    } else if material.cohesion != 0.0 {
+        "grains with cohesion".to_owned()
+    } else if across > 0.0 {
+        format!("a slope of {}", degrees(along / across))
+    } else {
+        "no gravity".to_owned()
+    }
+}
+
+fn degrees(tan: f64) -> String {
+    format!("{:.2} deg", tan.atan().to_degrees())
 }
