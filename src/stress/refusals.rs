@@ -7,34 +7,64 @@ use super::checks::{Check, Failure};
 /// Tries them on a component between steps.
 pub(super) fn probe(component: &mut Component) -> Option<Failure> {
     let before = component.state_hash();
-    let time = component.time();
-    let mut wrong = None;
-    let mut judge = |what: String, refused: Result<(), Error>| {
+    let mut judge = Judge {
+        time: component.time(),
+        wrong: None,
+    };
+    steps(component, &mut judge);
+    variables(component, &mut judge);
+    states(component, &mut judge);
+    if judge.wrong.is_none() && component.state_hash() != before {
+        judge.wrong = Some(Failure::at(
+            Check::Refusal,
+            judge.time,
+            "what was refused changed the state",
+        ));
+    }
+    judge.wrong
+}
+
+/// Keeps the first that was taken, or refused without a reason.
+struct Judge {
+    /// When it is tried [s].
+    time: f64,
+    wrong: Option<Failure>,
+}
+
+impl Judge {
+    fn hear(&mut self, what: impl std::fmt::Display, refused: Result<(), Error>) {
         let problem = match refused {
             Ok(()) => "was taken".to_owned(),
             Err(error) if error.to_string().len() < 20 => format!("was refused with: {error}"),
             Err(_) => return,
         };
-        wrong.get_or_insert(Failure::at(
+        self.wrong.get_or_insert(Failure::at(
             Check::Refusal,
-            time,
+            self.time,
             format!("{what} {problem}"),
         ));
-    };
+    }
+}
+
+/// Steps of no length, and from elsewhere in time.
+fn steps(component: &mut Component, judge: &mut Judge) {
+    let time = judge.time;
     for (h, what) in [
         (0.0, "a step of 0 s"),
         (-1e-3, "a step back"),
         (f64::NAN, "a step of NaN"),
         (f64::INFINITY, "a step without end"),
     ] {
-        judge(what.to_owned(), component.do_step(time, h).map(drop));
+        judge.hear(what, component.do_step(time, h).map(drop));
     }
     for t in [time + 1.0, f64::NAN] {
-        judge(
-            format!("a step from t = {t}"),
-            component.do_step(t, 1e-3).map(drop),
-        );
+        let refused = component.do_step(t, 1e-3).map(drop);
+        judge.hear(format!("a step from t = {t}"), refused);
     }
+}
+
+/// Values that no variable has, and a variable that is not there.
+fn variables(component: &mut Component, judge: &mut Judge) {
     let rows: Vec<_> = component.variables().rows().to_vec();
     for row in &rows {
         let count = row.len();
@@ -46,40 +76,28 @@ pub(super) fn probe(component: &mut Component) -> Option<Failure> {
         };
         for value in bad {
             let refused = component.set(&[row.reference], &vec![*value; count]);
-            judge(format!("{} = {value}", row.name), refused);
+            judge.hear(format!("{} = {value}", row.name), refused);
         }
         if row.causality == Causality::Input {
             let most = row.range.map_or(f64::MAX, |(_, most)| most);
-            judge(
-                format!("{} = twice its most", row.name),
-                component.set(&[row.reference], &[2.0 * most + 1.0]),
-            );
+            let refused = component.set(&[row.reference], &[2.0 * most + 1.0]);
+            judge.hear(format!("{} = twice its most", row.name), refused);
         }
     }
-    judge(
-        "an unknown variable".to_owned(),
-        component.set(&[u32::MAX], &[0.0]),
-    );
-    if let Ok(bytes) = component.save() {
-        judge(
-            "half of a saved state".to_owned(),
-            component.restore(&bytes[..bytes.len() / 2]),
-        );
-        let mut changed = bytes.clone();
-        if let Some(byte) = changed.last_mut() {
-            *byte ^= 1;
-        }
-        judge(
-            "a changed saved state".to_owned(),
-            component.restore(&changed),
-        );
+    let refused = component.set(&[u32::MAX], &[0.0]);
+    judge.hear("an unknown variable", refused);
+}
+
+/// States that are not whole.
+fn states(component: &mut Component, judge: &mut Judge) {
+    let Ok(bytes) = component.save() else {
+        return;
+    };
+    let refused = component.restore(&bytes[..bytes.len() / 2]);
+    judge.hear("half of a saved state", refused);
+    let mut changed = bytes.clone();
+    if let Some(byte) = changed.last_mut() {
+        *byte ^= 1;
     }
-    if wrong.is_none() && component.state_hash() != before {
-        wrong = Some(Failure::at(
-            Check::Refusal,
-            time,
-            "what was refused changed the state",
-        ));
-    }
-    wrong
+    judge.hear("a changed saved state", component.restore(&changed));
 }

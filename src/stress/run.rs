@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use serde::{Deserialize, Serialize};
 
-use crate::component::Component;
+use crate::component::{Component, Error};
 use crate::scene::{Scene, SceneErrors};
 
 use super::checks::{Check, Failure};
@@ -141,33 +141,7 @@ fn ridden(case: &Case, scene: &Scene, bounds: &Bounds) -> Outcome {
     witness
         .failures
         .extend(refusals::probe(&mut ride.component));
-    let mut done: Vec<Done> = Vec::new();
-    let mut saved = None;
-    let is_energy = |failure: &Failure| failure.check == Check::Energy;
-    let mut energy_at = None;
-    loop {
-        if ride.index == case.drive.restore_after && saved.is_none() {
-            saved = Some((done.len(), ride.component.save()));
-        }
-        let (start, wanted) = (ride.component.time(), ride.wanted());
-        match ride.next() {
-            None => break,
-            Some(Ok(step)) => {
-                witness.look(&ride.component, &step, start, &wanted);
-                witness.count(&step);
-                done.push(step);
-                if energy_at.is_none() && witness.failures.iter().any(is_energy) {
-                    energy_at = Some(ride.component.time());
-                }
-            }
-            Some(Err(error)) => {
-                witness
-                    .failures
-                    .push(Failure::at(Check::Step, start, error));
-                break;
-            }
-        }
-    }
+    let watched = watch(&mut ride, &mut witness, case.drive.restore_after);
     witness.figures.cpu = ride.cpu;
     if ride.is_hung() {
         let what = format!("{:.1} s of CPU time, allowed {} s", ride.cpu, bounds.cpu);
@@ -177,16 +151,16 @@ fn ridden(case: &Case, scene: &Scene, bounds: &Bounds) -> Outcome {
     }
     let (mut failures, figures) = (witness.failures, witness.figures);
     // One that did not come to where the first look failed says nothing against it.
-    if let Some(time) = energy_at.filter(|_| !scene.gates.is_empty())
+    if let Some(time) = watched.energy_at.filter(|_| !scene.gates.is_empty())
         && let Some(closer) = energy_in_pieces(case, scene, bounds, (time, ride.component.time()))
     {
-        failures.retain(|failure| !is_energy(failure));
+        failures.retain(|failure| failure.check != Check::Energy);
         failures.extend(closer);
     }
     if failures.is_empty() {
-        if let Some((from, saved)) = saved {
+        if let Some((from, saved)) = watched.saved {
             let saved = saved.map_err(|e| e.to_string());
-            failures.extend(others::same_bits(&ride, case, saved, &done[from..]));
+            failures.extend(others::same_bits(&ride, case, saved, &watched.done[from..]));
         }
         if let Some(twin) = &case.drive.twin {
             failures.extend(others::twin(&ride.component, case, twin, bounds));
@@ -197,6 +171,51 @@ fn ridden(case: &Case, scene: &Scene, bounds: &Bounds) -> Outcome {
         figures,
         refused: None,
     }
+}
+
+/// What is kept of a ride for the checks after it.
+#[derive(Default)]
+struct Watched {
+    done: Vec<Done>,
+    /// The state to go back to, and how many steps were done by then; none if it did not come so far.
+    saved: Option<(usize, Result<Vec<u8>, Error>)>,
+    /// When the check of energy first failed [s].
+    energy_at: Option<f64>,
+}
+
+/// Goes to the end or to the first step that fails, with the witness beside; saves the state after so many steps.
+fn watch(ride: &mut Ride, witness: &mut Witness, restore_after: usize) -> Watched {
+    let mut watched = Watched::default();
+    loop {
+        if ride.index == restore_after && watched.saved.is_none() {
+            watched.saved = Some((watched.done.len(), ride.component.save()));
+        }
+        let (start, wanted) = (ride.component.time(), ride.wanted());
+        match ride.next() {
+            None => break,
+            Some(Ok(step)) => {
+                witness.look(&ride.component, &step, start, &wanted);
+                witness.count(&step);
+                watched.done.push(step);
+                if watched.energy_at.is_none() && energy_failure(&witness.failures).is_some() {
+                    watched.energy_at = Some(ride.component.time());
+                }
+            }
+            Some(Err(error)) => {
+                witness
+                    .failures
+                    .push(Failure::at(Check::Step, start, error));
+                break;
+            }
+        }
+    }
+    watched
+}
+
+fn energy_failure(failures: &[Failure]) -> Option<&Failure> {
+    failures
+        .iter()
+        .find(|failure| failure.check == Check::Energy)
 }
 
 /// The check of energy once more with a gate's work taken force by force: over a long communication step only the mean
@@ -223,8 +242,7 @@ fn energy_in_pieces(
             Some(Ok(step)) => witness.look(&ride.component, &step, start, &wanted),
             Some(Err(error)) => return Some(Some(Failure::at(Check::Step, start, error))),
         }
-        let energy = |f: &&Failure| f.check == Check::Energy;
-        if let Some(failure) = witness.failures.iter().find(energy) {
+        if let Some(failure) = energy_failure(&witness.failures) {
             return Some(Some(failure.clone()));
         }
     }

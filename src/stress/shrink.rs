@@ -40,40 +40,65 @@ const NEEDED: [&str; 9] = [
 
 /// Smaller cases than this one, the boldest first.
 fn smaller(case: &Case, keep_walls: bool) -> Vec<Case> {
+    let mut found = shorter(case);
+    found.extend(fewer_entries(case, keep_walls));
+    if case.scene.contains_key("schedule") {
+        found.push(changed(case, |c| {
+            c.scene.remove("schedule");
+        }));
+    }
+    for section in ["numerics", "materials"] {
+        for path in keys(case.scene.get(section), section) {
+            found.push(changed(case, |c| drop_key(&mut c.scene, &path)));
+        }
+    }
+    found.extend([1.5, 1.15].map(|factor| coarser(case, factor)));
+    found
+}
+
+fn changed(case: &Case, change: impl FnOnce(&mut Case)) -> Case {
+    let mut other = case.clone();
+    change(&mut other);
+    other
+}
+
+/// With a shorter drive.
+fn shorter(case: &Case) -> Vec<Case> {
     let mut found = Vec::new();
     let drive = &case.drive;
-    let with = |change: &dyn Fn(&mut Case)| {
-        let mut other = case.clone();
-        change(&mut other);
-        other
-    };
     if drive.count > 1 {
-        found.push(with(&|c| c.drive.count /= 2));
-        found.push(with(&|c| c.drive.count -= 1));
+        found.push(changed(case, |c| c.drive.count /= 2));
+        found.push(changed(case, |c| c.drive.count -= 1));
     }
     if drive.most_steps > 1 {
-        found.push(with(&|c| c.drive.most_steps /= 2));
+        found.push(changed(case, |c| c.drive.most_steps /= 2));
     }
     if drive.steps.len() > 1 {
         found.extend((0..drive.steps.len()).map(|i| {
-            with(&|c| {
+            changed(case, |c| {
                 c.drive.steps.remove(i);
             })
         }));
     }
     if drive.restore_after > 0 {
-        found.push(with(&|c| c.drive.restore_after /= 2));
+        found.push(changed(case, |c| c.drive.restore_after /= 2));
     }
     if drive.twin.is_some() {
-        found.push(with(&|c| c.drive.twin = None));
+        found.push(changed(case, |c| c.drive.twin = None));
     }
+    found
+}
+
+/// Each without a body, a device, a gauge or a wall.
+fn fewer_entries(case: &Case, keep_walls: bool) -> Vec<Case> {
+    let mut found = Vec::new();
     for section in SECTIONS {
         if keep_walls && section == "walls" {
             continue;
         }
         let names = case.scene.get(section).and_then(Value::as_table);
         for name in names.into_iter().flat_map(Table::keys) {
-            found.push(with(&|c| {
+            found.push(changed(case, |c| {
                 if let Some(Value::Table(entries)) = c.scene.get_mut(section) {
                     entries.remove(name);
                 }
@@ -85,26 +110,17 @@ fn smaller(case: &Case, keep_walls: bool) -> Vec<Case> {
             }));
         }
     }
-    if case.scene.contains_key("schedule") {
-        found.push(with(&|c| {
-            c.scene.remove("schedule");
-        }));
-    }
-    for section in ["numerics", "materials"] {
-        for path in keys(case.scene.get(section), section) {
-            found.push(with(&|c| drop_key(&mut c.scene, &path)));
-        }
-    }
-    // Fewer particles.
-    for factor in [1.5, 1.15] {
-        found.push(with(&|c| {
-            let numerics = c.scene.get_mut("numerics").and_then(Value::as_table_mut);
-            if let Some(Value::Float(spacing)) = numerics.and_then(|n| n.get_mut("spacing")) {
-                *spacing *= factor;
-            }
-        }));
-    }
     found
+}
+
+/// With fewer particles.
+fn coarser(case: &Case, factor: f64) -> Case {
+    changed(case, |c| {
+        let numerics = c.scene.get_mut("numerics").and_then(Value::as_table_mut);
+        if let Some(Value::Float(spacing)) = numerics.and_then(|n| n.get_mut("spacing")) {
+            *spacing *= factor;
+        }
+    })
 }
 
 /// Takes out gauges and schedules that refer to a device.

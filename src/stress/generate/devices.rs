@@ -8,6 +8,31 @@ use super::parts::{
 };
 use super::plane::{PARTICLES, STEPS};
 
+/// A gate and the force on it: the ends of its plate, its largest speed and its opening at the start, its slip.
+pub(super) fn gate(
+    name: &str,
+    [from, to]: [[f64; 2]; 2],
+    (max_speed, start): (f64, f64),
+    slip: &str,
+) -> String {
+    format!(
+        "[gates.{name}]\nfrom = {from:?}\nto = {to:?}\nmax_speed = {max_speed:?}\nstart = {start:?}\n{slip}{}",
+        force(name, "gate")
+    )
+}
+
+/// An outflow from a box.
+pub(super) fn outflow(name: &str, lower: &[f64], upper: &[f64]) -> String {
+    format!("[outflows.{name}]\nlower = {lower:?}\nupper = {upper:?}\n")
+}
+
+/// An inflow of beads through a face.
+fn feed(from: [f64; 2], to: [f64; 2], velocity: [f64; 2]) -> String {
+    format!(
+        "[inflows.feed]\nmaterial = \"beads\"\nfrom = {from:?}\nto = {to:?}\nvelocity = {velocity:?}\n"
+    )
+}
+
 /// A silo's geometry: width, height of the fill, opening, spacing.
 pub(super) struct Silo {
     pub(super) width: f64,
@@ -40,19 +65,9 @@ impl Silo {
             slips[0],
         );
         text += &wall("right", &[[b, 0.0], [w, 0.0], [w, top]], false, slips[0]);
-        text += &format!(
-            "[gates.main]\nfrom = {:?}\nto = {:?}\nmax_speed = {max_speed:?}\nstart = {start:?}\n{}{}",
-            [a, 0.0],
-            [b, 0.0],
-            slips[1],
-            force("main", "gate")
-        );
+        text += &gate("main", [[a, 0.0], [b, 0.0]], (max_speed, start), slips[1]);
         let drain = short(fall - 7.0 * dp);
-        text + &format!(
-            "[outflows.drain]\nlower = {:?}\nupper = {:?}\n",
-            [-side, -fall],
-            [short(w + side), -drain]
-        )
+        text + &outflow("drain", &[-side, -fall], &[short(w + side), -drain])
     }
 }
 
@@ -118,26 +133,19 @@ pub(super) fn chute(dice: &mut Dice) -> Draft {
         scene += &body("heap", "beads", &[from, 0.0], &[to, depth], "");
     }
     let face = short(3.0 * dp);
-    scene += &format!(
-        "[inflows.feed]\nmaterial = \"beads\"\nfrom = {:?}\nto = {:?}\nvelocity = {:?}\n",
-        [face, depth],
-        [face, 0.0],
-        [speed, 0.0]
+    scene += &feed([face, depth], [face, 0.0], [speed, 0.0]);
+    let at = short(length - 12.0 * dp);
+    let (max_speed, start) = (dice.log(0.02, 50.0), dice.pick(&[0.0, 1.0, 0.5]));
+    scene += &gate(
+        "sluice",
+        [[at, 0.0], [at, short(10.0 * dp)]],
+        (max_speed, start),
+        &slip(dice),
     );
-    let gate = short(length - 12.0 * dp);
-    scene += &format!(
-        "[gates.sluice]\nfrom = {:?}\nto = {:?}\nmax_speed = {:?}\nstart = {:?}\n{}{}",
-        [gate, 0.0],
-        [gate, short(10.0 * dp)],
-        dice.log(0.02, 50.0),
-        dice.pick(&[0.0, 1.0, 0.5]),
-        slip(dice),
-        force("sluice", "gate")
-    );
-    scene += &format!(
-        "[outflows.end]\nlower = {:?}\nupper = {:?}\n",
-        [short(length + dp), -below],
-        [short(length + 16.0 * dp), above]
+    scene += &outflow(
+        "end",
+        &[short(length + dp), -below],
+        &[short(length + 16.0 * dp), above],
     );
     let drive = drive(dice, scale.internal_step(), STEPS);
     let time = drive.most_steps as f64 * scale.internal_step();
@@ -169,12 +177,7 @@ pub(super) fn jam(dice: &mut Dice) -> Draft {
     scene += &wall("tub", &tub.outline(), true, &slip(dice));
     let face = short(height - 6.0 * dp);
     let (left, right) = (short(1.5 * dp), short(width - 1.5 * dp));
-    scene += &format!(
-        "[inflows.feed]\nmaterial = \"beads\"\nfrom = {:?}\nto = {:?}\nvelocity = {:?}\n",
-        [right, face],
-        [left, face],
-        [0.0, -speed]
-    );
+    scene += &feed([right, face], [left, face], [0.0, -speed]);
     let most = short(1490.0 * (right - left) * speed);
     let mut drive = drive(dice, scale.internal_step(), STEPS);
     let time = drive.most_steps as f64 * scale.internal_step();

@@ -6,10 +6,9 @@
 
 use super::super::case::Twin;
 use super::super::dice::{Dice, short};
-use super::devices::Silo;
+use super::devices::{Silo, gate, outflow};
 use super::parts::{
-    G, Scale, Tub, body, drive, force, head, plain_drive, plain_material, plain_numerics, schedule,
-    wall,
+    G, Scale, Tub, body, drive, head, plain_drive, plain_material, plain_numerics, schedule, wall,
 };
 use super::plane::{PARTICLES, STEPS};
 use super::{Draft, moving};
@@ -64,17 +63,12 @@ pub(super) fn slam(dice: &mut Dice) -> Draft {
     let (roof, end) = (short(18.0 * dp), short(length + 14.0 * dp));
     let bed = [[end, roof], [0.0, roof], [0.0, 0.0], [length, 0.0]];
     scene += &wall("bed", &bed, false, "");
-    let gate = short(0.6 * length);
-    scene += &format!(
-        "[gates.sluice]\nfrom = {:?}\nto = {:?}\nmax_speed = {speed:?}\nstart = 1.0\n{}",
-        [gate, 0.0],
-        [gate, plate],
-        force("sluice", "gate")
-    );
-    scene += &format!(
-        "[outflows.end]\nlower = {:?}\nupper = {:?}\n",
-        [short(length + dp), -short(8.0 * dp)],
-        [short(length + 40.0 * dp), short(17.0 * dp)]
+    let at = short(0.6 * length);
+    scene += &gate("sluice", [[at, 0.0], [at, plate]], (speed, 1.0), "");
+    scene += &outflow(
+        "end",
+        &[short(length + dp), -short(8.0 * dp)],
+        &[short(length + 40.0 * dp), short(17.0 * dp)],
     );
     let at = short(300.0 * scale.internal_step());
     scene += &schedule("gate.sluice.opening", &[[0.0, 1.0], [at, 0.0]], "hold");

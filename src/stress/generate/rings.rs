@@ -2,6 +2,7 @@
 
 use super::super::dice::{Dice, short};
 use super::Draft;
+use super::devices::outflow;
 use super::parts::{Scale, body, drive, force, head, history, material, numerics, slip, wall};
 use super::plane::{PARTICLES, STEPS};
 
@@ -65,11 +66,7 @@ pub(super) fn silo(dice: &mut Dice) -> Draft {
         slip(dice),
         force("main", "gate")
     );
-    scene += &format!(
-        "[outflows.drain]\nlower = {:?}\nupper = {:?}\n",
-        [0.0, -fall],
-        [wide, -short(fall - 7.0 * dp)]
-    );
+    scene += &outflow("drain", &[0.0, -fall], &[wide, -short(fall - 7.0 * dp)]);
     let drive = drive(dice, scale.internal_step(), STEPS);
     let time = drive.most_steps as f64 * scale.internal_step();
     scene += &history(dice, "gate.main.opening", 1.0, time);

@@ -2,6 +2,7 @@
 
 use super::super::dice::{Dice, short};
 use super::Draft;
+use super::devices::outflow;
 use super::parts::{Scale, body, drive, force, head, history, material, numerics, slip};
 
 /// Internal steps in space: pairs are many.
@@ -89,10 +90,10 @@ pub(super) fn sluice(dice: &mut Dice) -> Draft {
         dice.log(0.05, 20.0),
         force("sluice", "gate")
     );
-    scene += &format!(
-        "[outflows.end]\nlower = {:?}\nupper = {:?}\n",
-        [short(2.0 * side + 6.0 * dp), 0.0, -low],
-        [far, across, short(2.0 * side + 8.0 * dp)]
+    scene += &outflow(
+        "end",
+        &[short(2.0 * side + 6.0 * dp), 0.0, -low],
+        &[far, across, short(2.0 * side + 8.0 * dp)],
     );
     let drive = drive(dice, scale.internal_step(), STEPS);
     let time = drive.most_steps as f64 * scale.internal_step();
