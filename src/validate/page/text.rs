@@ -1,7 +1,5 @@
 //! The Markdown of a study's page.
 
-use std::fmt::Write as _;
-
 use super::{Found, MADE, SUMMARY, Summary};
 use crate::validate::report::number;
 use crate::validate::{Member, Metric, Outcome, Recording, Report, Rule, Study, Table, Verdict};
@@ -123,9 +121,11 @@ fn how(study: &Study, found: &Found, summary: &Summary) -> String {
     let quick = if summary.quick { " --quick" } else { "" };
     let (there, all) = summary.members;
     let threads = found.there().map(|(_, r)| r.threads).max().unwrap_or(1);
-    let mut text = format!(
+    // GitHub and rustdoc fold the table; elsewhere it is simply a table.
+    format!(
         "## How it was computed\n\n`sandgate validate {}{quick}`, {there} of {all} runs, {} s of CPU time, {} a \
-         run; at most {} particles. Sources (hash of what can change a result): {}.\n\n",
+         run; at most {} particles. Sources (hash of what can change a result): {}.\n\n\
+         <details><summary>All runs</summary>\n\n{}\n</details>",
         study.name,
         number(summary.cpu),
         match threads {
@@ -137,32 +137,12 @@ fn how(study: &Study, found: &Found, summary: &Summary) -> String {
             "none".to_owned()
         } else {
             summary.sources.join(", ")
-        }
-    );
-    let row = |(member, found): (&Member, &Option<Recording>)| match found {
-        None => vec![
-            member.name.clone(),
-            "not run".to_owned(),
-            String::new(),
-            String::new(),
-            String::new(),
-            String::new(),
-        ],
-        Some(r) => vec![
-            member.name.clone(),
-            match &r.outcome {
-                Outcome::Failed(why) => {
-                    format!("failed: {}", why.replace('|', "/").replace('\n', " "))
-                }
-                Outcome::Finished => "finished".to_owned(),
-                Outcome::Running => "under way".to_owned(),
-            },
-            r.particles.to_string(),
-            number(r.time.last().copied().unwrap_or(0.0)),
-            r.steps.to_string(),
-            number(r.cpu),
-        ],
-    };
+        },
+        markdown(&runs(found))
+    )
+}
+
+fn runs(found: &Found) -> Table {
     let head = [
         "run",
         "outcome",
@@ -171,21 +151,34 @@ fn how(study: &Study, found: &Found, summary: &Summary) -> String {
         "steps",
         "CPU [s]",
     ];
-    let table = Table {
+    let rows = found.members.iter().zip(&found.recordings);
+    Table {
         title: String::new(),
         head: head.map(str::to_owned).to_vec(),
-        rows: found
-            .members
-            .iter()
-            .zip(&found.recordings)
-            .map(row)
-            .collect(),
+        rows: rows.map(|(m, r)| run(m, r.as_ref())).collect(),
+    }
+}
+
+/// A row of that table.
+fn run(member: &Member, recording: Option<&Recording>) -> Vec<String> {
+    let Some(r) = recording else {
+        let mut row = vec![member.name.clone(), "not run".to_owned()];
+        row.resize(6, String::new());
+        return row;
     };
-    // GitHub and rustdoc fold this; elsewhere it is simply a table.
-    let _ = write!(
-        text,
-        "<details><summary>All runs</summary>\n\n{}\n</details>",
-        markdown(&table)
-    );
-    text
+    let outcome = match &r.outcome {
+        Outcome::Failed(why) => {
+            format!("failed: {}", why.replace('|', "/").replace('\n', " "))
+        }
+        Outcome::Finished => "finished".to_owned(),
+        Outcome::Running => "under way".to_owned(),
+    };
+    vec![
+        member.name.clone(),
+        outcome,
+        r.particles.to_string(),
+        number(r.time.last().copied().unwrap_or(0.0)),
+        r.steps.to_string(),
+        number(r.cpu),
+    ]
 }

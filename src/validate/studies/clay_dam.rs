@@ -32,6 +32,8 @@ const FEET: (f64, f64) = (0.01, 0.01);
 /// Places whose mean leaves the surface's roughness out: 70 mm.
 const WIDE: usize = 7;
 const PAPER_B: &str = "paper_b";
+/// Of the resolutions' curves, and of the other scheme's.
+const COLOURS: [usize; 5] = [0, 1, 2, 3, 5];
 
 /// Particles over the height, each twice those before.
 fn rows(effort: Effort) -> [u32; 4] {
@@ -73,49 +75,64 @@ fn apart(one: &Recording, other: &Recording, time: f64, places: usize) -> Option
     rms(&errors)
 }
 
-fn chart(curves: Vec<Curve>) -> Result<String, String> {
-    Chart {
-        x: "x [m]".to_owned(),
-        y: "depth [m]".to_owned(),
-        curves,
-    }
-    .svg()
-}
-
 fn curve(recording: &Recording, time: f64, name: String, colour: usize) -> Option<Curve> {
     let depths = recording.values_at(SURFACE, time)?.iter().enumerate();
     let points = depths.map(|(k, h)| (FEET.0 + FEET.1 * k as f64, *h));
     Some(Curve::new(name, points.collect(), Look::Line, colour))
 }
 
-fn analyse(results: &Results) -> Result<Report, String> {
-    let mut report = Report::default();
-    let rows = rows(results.effort);
-    let found = rows.map(|rows| results.finished(&format!("rows_{rows}")));
-    let paper_b = results.finished(PAPER_B);
-    for time in TIMES {
-        let steps: Vec<Option<f64>> = found
-            .windows(2)
-            .map(|pair| apart(pair[0]?, pair[1]?, time, 1))
-            .collect();
-        let smooth = found
-            .windows(2)
-            .map(|pair| apart(pair[0]?, pair[1]?, time, WIDE));
-        for (pair, step) in rows.windows(2).zip(&steps) {
-            let rule = if pair[1] == rows[3] {
+/// Runs that came to their ends.
+struct Runs<'a> {
+    rows: [u32; 4],
+    default: [Option<&'a Recording>; 4],
+    paper_b: Option<&'a Recording>,
+}
+
+impl<'a> Runs<'a> {
+    fn of(results: &'a Results) -> Self {
+        let rows = rows(results.effort);
+        Self {
+            rows,
+            default: rows.map(|rows| results.finished(&format!("rows_{rows}"))),
+            paper_b: results.finished(PAPER_B),
+        }
+    }
+
+    /// All with their names, the other scheme last.
+    fn named(&self) -> impl Iterator<Item = (String, Option<&'a Recording>)> {
+        let default = self.rows.iter().zip(self.default);
+        let default = default.map(|(rows, found)| (format!("default, H/{rows}"), found));
+        let theirs = (format!("paper_b, H/{}", self.rows[0]), self.paper_b);
+        default.chain([theirs])
+    }
+
+    /// Differences between each resolution and the next finer one at a time, each place the mean of so many.
+    fn differences(&self, time: f64, places: usize) -> [Option<f64>; 3] {
+        let pair = |k: usize| apart(self.default[k]?, self.default[k + 1]?, time, places);
+        [0, 1, 2].map(pair)
+    }
+
+    /// Whether results still change with the spacing at a time.
+    fn convergence(&self, time: f64) -> Vec<Metric> {
+        let steps = self.differences(time, 1);
+        let smooth = self.differences(time, WIDE);
+        let pairs = || self.rows.windows(2);
+        let mut metrics = Vec::new();
+        for (pair, step) in pairs().zip(steps) {
+            let rule = if pair[1] == self.rows[3] {
                 Rule::AtMost(0.01)
             } else {
                 Rule::Report(None)
             };
-            report.metrics.push(Metric::new(
+            metrics.push(Metric::new(
                 format!("{time} s: H/{} against H/{}, rms over H", pair[0], pair[1]),
-                *step,
+                step,
                 rule,
                 "converged: the finest one's own error is of this order",
             ));
         }
-        for (pair, step) in rows.windows(2).zip(smooth) {
-            report.metrics.push(Metric::new(
+        for (pair, step) in pairs().zip(smooth) {
+            metrics.push(Metric::new(
                 format!(
                     "{time} s: H/{} against H/{}, means over 70 mm",
                     pair[0], pair[1]
@@ -126,44 +143,58 @@ fn analyse(results: &Results) -> Result<Report, String> {
             ));
         }
         let order = || Some((steps[0]? / steps[2]?).log2() / 2.0);
-        report.metrics.push(Metric::new(
+        metrics.push(Metric::new(
             format!("{time} s: order of these differences"),
             order(),
             Rule::AtLeast(0.5),
             "they fall with the spacing",
         ));
+        metrics
     }
-    let mut table = Table {
-        title: "Fronts (depth of one spacing) [m], and cost".to_owned(),
-        head: ["run", "0.5 s", "0.625 s", "1 s", "CPU time [s]", "steps"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: Vec::new(),
-    };
-    let default = rows.iter().zip(&found);
-    let default = default.map(|(rows, found)| (format!("default, H/{rows}"), *found));
-    let theirs = (format!("paper_b, H/{}", rows[0]), paper_b);
-    for (name, found) in default.chain([theirs]) {
-        let Some(found) = found else { continue };
-        let front = |time| found.at(FRONT, time).map_or("-".to_owned(), number);
-        let mut row = vec![name];
-        row.extend(TIMES.map(front));
-        row.extend([number(found.cpu), found.steps.to_string()]);
-        table.rows.push(row);
-    }
-    report.tables.push(table);
-    for time in TIMES {
-        let mut curves = Vec::new();
-        for (k, (rows, found)) in rows.iter().zip(&found).enumerate() {
-            curves.extend(found.and_then(|f| curve(f, time, format!("default, H/{rows}"), k)));
+
+    fn fronts(&self) -> Table {
+        let row = |(name, found): (String, Option<&Recording>)| {
+            let found = found?;
+            let front = |time| found.at(FRONT, time).map_or("-".to_owned(), number);
+            let mut row = vec![name];
+            row.extend(TIMES.map(front));
+            row.extend([number(found.cpu), found.steps.to_string()]);
+            Some(row)
+        };
+        Table {
+            title: "Fronts (depth of one spacing) [m], and cost".to_owned(),
+            head: ["run", "0.5 s", "0.625 s", "1 s", "CPU time [s]", "steps"]
+                .map(str::to_owned)
+                .to_vec(),
+            rows: self.named().filter_map(row).collect(),
         }
-        let name = format!("paper_b, H/{}", rows[0]);
-        curves.extend(paper_b.and_then(|f| curve(f, time, name, 5)));
-        report.figures.push(Figure {
+    }
+
+    fn profiles(&self, time: f64) -> Result<Figure, String> {
+        let runs = self.named().zip(COLOURS);
+        let curves = runs.filter_map(|((name, found), colour)| curve(found?, time, name, colour));
+        Ok(Figure {
             name: format!("at_{}", (1000.0 * time).round()),
             caption: format!("Depth {time} s after the release (as [B], figures 3 to 7)"),
-            svg: chart(curves)?,
-        });
+            svg: Chart {
+                x: "x [m]".to_owned(),
+                y: "depth [m]".to_owned(),
+                curves: curves.collect(),
+            }
+            .svg()?,
+        })
+    }
+}
+
+fn analyse(results: &Results) -> Result<Report, String> {
+    let runs = Runs::of(results);
+    let mut report = Report::default();
+    for time in TIMES {
+        report.metrics.extend(runs.convergence(time));
+    }
+    report.tables.push(runs.fronts());
+    for time in TIMES {
+        report.figures.push(runs.profiles(time)?);
     }
     Ok(report)
 }

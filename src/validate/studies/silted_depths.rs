@@ -84,24 +84,8 @@ impl Dam {
                 .with(&format!("gauges.{section}.from"), point(dam, 0.0))
                 .with(&format!("gauges.{section}.to"), point(dam, 0.6));
         }
-        for (name, material) in [("surface", None), ("bed", Some("silt"))] {
-            let key = |key: &str| format!("gauges.{name}.{key}");
-            template = template
-                .with(&key("kind"), "profile")
-                .with(&key("from"), point(0.02, 0.0))
-                .with(&key("to"), point(4.02, 0.0))
-                .with(&key("count"), 201_i64);
-            if let Some(material) = material {
-                template = template.with(&key("material"), material);
-            }
-        }
-        let mut series: Vec<String> = PLACES
-            .iter()
-            .flat_map(|(place, _)| {
-                ["level", "silt"].map(|what| format!("gauge.{what}_{place}.depth"))
-            })
-            .collect();
-        series.extend([LEFT, "gauge.surface.depth", "gauge.bed.depth"].map(str::to_owned));
+        template = with_profiles(template);
+        let series = series();
         let series: Vec<&str> = series.iter().map(String::as_str).collect();
         let snapshots = [0.5, 1.0, 2.0, 4.0, 6.0];
         let snapshots = snapshots.into_iter().filter(|t| *t <= self.until);
@@ -112,6 +96,31 @@ impl Dam {
             snapshots.collect(),
         ))
     }
+}
+
+/// Adds gauges of the surface and of the bed of silt.
+fn with_profiles(mut template: Template) -> Template {
+    for (name, material) in [("surface", None), ("bed", Some("silt"))] {
+        let key = |key: &str| format!("gauges.{name}.{key}");
+        template = template
+            .with(&key("kind"), "profile")
+            .with(&key("from"), point(0.02, 0.0))
+            .with(&key("to"), point(4.02, 0.0))
+            .with(&key("count"), 201_i64);
+        if let Some(material) = material {
+            template = template.with(&key("material"), material);
+        }
+    }
+    template
+}
+
+/// Outputs that are kept.
+fn series() -> Vec<String> {
+    let depths = PLACES
+        .iter()
+        .flat_map(|(place, _)| ["level", "silt"].map(|what| format!("gauge.{what}_{place}.depth")));
+    let others = [LEFT, "gauge.surface.depth", "gauge.bed.depth"].map(str::to_owned);
+    depths.chain(others).collect()
 }
 
 /// Spacings at which all depths are run to the end, coarse and as asked; and those of the grid study beside them [mm].

@@ -93,23 +93,12 @@ fn surface(recording: &Recording) -> Option<Vec<(f64, f64)>> {
     )
 }
 
-fn analyse(results: &Results) -> Result<Report, String> {
-    let (rows, until) = plan(results.effort);
-    let found = results.finished(&format!("block_{rows}"));
-    let profile = found.and_then(surface);
-    let shape = |s: &Vec<(f64, f64)>| {
-        let errors: Vec<f64> = s
-            .iter()
-            .filter(|p| p.0 < x_inf())
-            .map(|p| (p.1 - exact(p.0)) / exact(0.0))
-            .collect();
-        rms(&errors)
-    };
-    let reached = found.map(|f| fronts(f, HEIGHT / f64::from(rows)));
+/// Computed fronts, from first to last look, beside those of the thin-layer equation, and the last one beside where it stops.
+fn spreading(reached: Option<&[f64]>, until: f64) -> Vec<Metric> {
     let on_the_way = BLOCK.fronts(looks(until));
     let mut metrics = Vec::new();
     for (k, time) in looks(until).into_iter().enumerate() {
-        let value = reached.as_ref().and_then(|r| r.get(k).copied());
+        let value = reached.and_then(|r| r.get(k).copied());
         let text = format!("front at {time} s, thin-layer equation");
         let rule = Rule::Report(Some(on_the_way[k]));
         metrics.push(Metric::new(text, value, rule, "on its way").unit("m"));
@@ -120,26 +109,27 @@ fn analyse(results: &Results) -> Result<Report, String> {
             metrics.push(Metric::new(text, value, rule, source).unit("m"));
         }
     }
-    metrics.push(Metric::new(
-        "shape: rms of h - exact over the exact depth at the wall",
-        profile.as_ref().and_then(shape),
-        Rule::AtMost(0.03),
-        "3 % asked",
-    ));
+    metrics
+}
+
+/// Root of the mean square of the difference of the depth, where theory has material at rest, over that at the wall.
+fn shape_error(profile: &[(f64, f64)]) -> Option<f64> {
+    let covered = profile.iter().filter(|p| p.0 < x_inf());
+    let errors: Vec<f64> = covered.map(|p| (p.1 - exact(p.0)) / exact(0.0)).collect();
+    rms(&errors)
+}
+
+fn figure(profile: Option<Vec<(f64, f64)>>, (rows, until): (u32, f64)) -> Result<Figure, String> {
     let line = (0..=100).map(|k| {
         let x = x_inf() * f64::from(k) / 100.0;
         (x, exact(x))
     });
     let mut curves = vec![Curve::new("exact, at rest", line.collect(), Look::Thin, 6)];
     if let Some(profile) = profile {
-        curves.push(Curve::new(
-            format!("{rows} rows, {until} s"),
-            profile,
-            Look::Line,
-            0,
-        ));
+        let name = format!("{rows} rows, {until} s");
+        curves.push(Curve::new(name, profile, Look::Line, 0));
     }
-    let figure = Figure {
+    Ok(Figure {
         name: "shape".to_owned(),
         caption: format!("Depth at {until} s and where theory has it stop"),
         svg: Chart {
@@ -148,10 +138,24 @@ fn analyse(results: &Results) -> Result<Report, String> {
             curves,
         }
         .svg()?,
-    };
+    })
+}
+
+fn analyse(results: &Results) -> Result<Report, String> {
+    let (rows, until) = plan(results.effort);
+    let found = results.finished(&format!("block_{rows}"));
+    let profile = found.and_then(surface);
+    let reached = found.map(|f| fronts(f, HEIGHT / f64::from(rows)));
+    let mut metrics = spreading(reached.as_deref(), until);
+    metrics.push(Metric::new(
+        "shape: rms of h - exact over the exact depth at the wall",
+        profile.as_deref().and_then(shape_error),
+        Rule::AtMost(0.03),
+        "3 % asked",
+    ));
     Ok(Report {
         metrics,
-        figures: vec![figure],
+        figures: vec![figure(profile, (rows, until))?],
         ..Report::default()
     })
 }

@@ -39,6 +39,14 @@ struct Column {
     unit: f64,
 }
 
+impl Column {
+    /// Time [s] and front [m] as measured.
+    fn measured(&self) -> Vec<(f64, f64)> {
+        let points = self.measured.iter();
+        points.map(|(t, x)| (t * self.unit, *x)).collect()
+    }
+}
+
 #[allow(clippy::approx_constant, reason = "a time was measured at 0.6366 s")]
 const COLUMNS: [Column; 2] = [
     Column {
@@ -143,6 +151,12 @@ fn history(recording: &Recording) -> Option<Vec<(f64, f64)>> {
         .collect()
 }
 
+/// The same of a column's run, if it came to its end.
+fn front(results: &Results, column: &Column, run: &str) -> Option<Vec<(f64, f64)>> {
+    let found = results.finished(&format!("{}_{run}", column.name));
+    found.and_then(history)
+}
+
 /// The error with the largest size, with its sign, of a front that starts `delay` [s] later.
 fn largest_error(found: &[(f64, f64)], measured: &[(f64, f64)], delay: f64) -> Option<f64> {
     let errors = measured.iter().map(|(t, x)| {
@@ -182,11 +196,7 @@ fn changes(
     rows: u32,
     measured: &[(f64, f64)],
 ) -> Vec<Option<f64>> {
-    let of = |name: &str| {
-        results
-            .finished(&format!("{}_{name}", column.name))
-            .and_then(history)
-    };
+    let of = |name: &str| front(results, column, name);
     let change = |one: &str, other: &str| largest_change(&of(one)?, &of(other)?, measured);
     let [_, middle, fine] = self::rows(results.effort);
     let mut all = vec![change(&rows.min(middle).to_string(), &fine.to_string())];
@@ -214,69 +224,75 @@ fn dependence(results: &Results, column: &Column, measured: &[(f64, f64)]) -> Ve
     each.collect()
 }
 
+/// The front of a column of so many particles against the measured one.
+fn against_measured(
+    results: &Results,
+    column: &Column,
+    rows: u32,
+    measured: &[(f64, f64)],
+) -> [Metric; 3] {
+    let found = front(results, column, &rows.to_string());
+    let what = format!("{} column, {rows} particles along it", column.name);
+    let changes = changes(results, column, rows, measured);
+    let error = Metric::new(
+        format!("{what}: largest error of the front at a measured time"),
+        found.as_ref().and_then(|f| largest_error(f, measured, 0.0)),
+        Rule::Between(-0.05, 0.05),
+        column.source,
+    );
+    let delayed = found.as_ref().and_then(|f| best_delay(f, measured));
+    let delayed_error = Metric::new(
+        format!("{what}: the same, delayed"),
+        delayed.map(|d| d.1),
+        Rule::Between(-0.05, 0.05),
+        "a front that leads by the same time from first to last moves as fast as the measured one",
+    );
+    let delay = Metric::new(
+        format!("{what}: that delay"),
+        delayed.map(|d| d.0),
+        Rule::Report(None),
+        "the time that it takes to let go and to overcome the floor",
+    );
+    [
+        error.changed_by(changes.clone()),
+        delayed_error.changed_by(changes),
+        delay.unit("s"),
+    ]
+}
+
+/// Measured and computed fronts over time.
+fn figure(results: &Results, column: &Column) -> Result<Figure, String> {
+    let mut curves = vec![Curve::new(column.source, column.measured(), Look::Dots, 6)];
+    for (k, rows) in rows(results.effort).into_iter().enumerate() {
+        if let Some(found) = front(results, column, &rows.to_string()) {
+            let name = format!("{rows} particles");
+            curves.push(Curve::new(name, found, Look::Line, k));
+        }
+    }
+    Ok(Figure {
+        name: column.name.to_owned(),
+        caption: format!("Front of the column {} m high", column.height),
+        svg: Chart {
+            x: "time [s]".to_owned(),
+            y: "front [m]".to_owned(),
+            curves,
+        }
+        .svg()?,
+    })
+}
+
 fn analyse(results: &Results) -> Result<Report, String> {
     let mut report = Report::default();
     for column in &COLUMNS {
-        let measured: Vec<(f64, f64)> = column
-            .measured
-            .iter()
-            .map(|(t, x)| (t * column.unit, *x))
-            .collect();
-        let mut curves = vec![Curve::new(column.source, measured.clone(), Look::Dots, 6)];
-        for (k, rows) in rows(results.effort).into_iter().enumerate() {
-            let found = results
-                .finished(&format!("{}_{rows}", column.name))
-                .and_then(history);
-            let what = format!("{} column, {rows} particles along it", column.name);
-            let changes = changes(results, column, rows, &measured);
-            let error = Metric::new(
-                format!("{what}: largest error of the front at a measured time"),
-                found
-                    .as_ref()
-                    .and_then(|f| largest_error(f, &measured, 0.0)),
-                Rule::Between(-0.05, 0.05),
-                column.source,
-            );
-            report.metrics.push(error.changed_by(changes.clone()));
-            let delayed = found.as_ref().and_then(|f| best_delay(f, &measured));
-            let error = Metric::new(
-                format!("{what}: the same, delayed"),
-                delayed.map(|d| d.1),
-                Rule::Between(-0.05, 0.05),
-                "a front that leads by the same time from first to last moves as fast as the measured one",
-            );
-            report.metrics.push(error.changed_by(changes));
-            report.metrics.push(
-                Metric::new(
-                    format!("{what}: that delay"),
-                    delayed.map(|d| d.0),
-                    Rule::Report(None),
-                    "the time that it takes to let go and to overcome the floor",
-                )
-                .unit("s"),
-            );
-            if let Some(found) = found {
-                curves.push(Curve::new(
-                    format!("{rows} particles"),
-                    found,
-                    Look::Line,
-                    k,
-                ));
-            }
+        let measured = column.measured();
+        for rows in rows(results.effort) {
+            let metrics = against_measured(results, column, rows, &measured);
+            report.metrics.extend(metrics);
         }
         report
             .metrics
             .extend(dependence(results, column, &measured));
-        report.figures.push(Figure {
-            name: column.name.to_owned(),
-            caption: format!("Front of the column {} m high", column.height),
-            svg: Chart {
-                x: "time [s]".to_owned(),
-                y: "front [m]".to_owned(),
-                curves,
-            }
-            .svg()?,
-        });
+        report.figures.push(figure(results, column)?);
     }
     Ok(report)
 }

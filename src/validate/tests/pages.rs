@@ -3,12 +3,20 @@
 use super::*;
 use std::path::Path;
 
+/// Of the recordings that a store has.
+fn look(store: &Store) -> Found {
+    Found::new(&STUDY, Effort::Full, store).unwrap()
+}
+
+fn page(pages: &Path) -> String {
+    std::fs::read_to_string(pages.join("drops.md")).unwrap()
+}
+
 #[test]
 fn pages_say_what_was_found_and_whether_it_is_current() {
     let desk = Desk::new();
-    let look = |store: &Store| Found::new(&STUDY, Effort::Full, store).unwrap();
     let pages = desk.pages();
-    let page = || std::fs::read_to_string(pages.join("drops.md")).unwrap();
+    let page = || page(&pages);
     page::write(&pages, &STUDY, &look(&desk.store), None).unwrap();
     assert!(
         page().contains("**no result**") && page().contains("0 of 4 runs"),
@@ -42,19 +50,21 @@ fn pages_say_what_was_found_and_whether_it_is_current() {
     let before = page();
     page::write(&pages, &STUDY, &look(&desk.store), None).unwrap();
     assert_eq!(page(), before);
+}
 
+#[test]
+fn pages_of_another_solver_and_of_quick_runs_say_so_and_the_index_has_their_verdicts() {
+    let desk = Desk::new();
+    let pages = desk.pages();
+    let page = || page(&pages);
+    run_all(&desk);
     // Another solver: the recordings are old, and the page says so.
     let newer = Store::new(desk.folder.path(), "sources-2");
     assert_eq!(look(&newer).outdated, 4);
     page::write(&pages, &STUDY, &look(&newer), None).unwrap();
     assert!(page().contains("4 of 4 runs are older"), "{}", page());
-    page::write(
-        &pages,
-        &STUDY,
-        &Found::new(&STUDY, Effort::Quick, &newer).unwrap(),
-        None,
-    )
-    .unwrap();
+    let quick = Found::new(&STUDY, Effort::Quick, &newer).unwrap();
+    page::write(&pages, &STUDY, &quick, None).unwrap();
     assert!(page().contains("judge nothing"), "{}", page());
     page::write(&pages, &STUDY, &look(&newer), None).unwrap();
 
