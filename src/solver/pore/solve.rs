@@ -28,66 +28,81 @@ impl<const D: usize> Solver<D> {
         sum.sum() / (D as f64 + 2.0)
     }
 
-    /// Conjugate gradients with the diagonal.
-    pub(super) fn iterate(&self, pore: &mut [f64], work: &mut Work, limit2: f64) {
+    /// product = A direction: a_i d_i - V_i sum_j 2 V_j |F| d_j, a_i the diagonal; returns direction.product.
+    fn seepage_product(&self, work: &mut Work) -> f64 {
         let Work {
             diagonal,
-            residual,
             direction,
             product,
             ..
         } = work;
+        let d = &*direction;
+        self.workers
+            .blocks_sum(&self.lists.blocks, product, |block, first, out| {
+                let mut sum = 0.0;
+                in_lanes!(
+                    self.arch,
+                    |lanes| for (row, o) in out.iter_mut().enumerate() {
+                        let i = first + row;
+                        *o = 0.0;
+                        if diagonal[i] > 0.0 {
+                            let others = self.weighted_sum(lanes, d, block, row);
+                            *o = diagonal[i] * d[i] - self.volume[i] * others;
+                            sum += d[i] * *o;
+                        }
+                    }
+                );
+                sum
+            })
+    }
+
+    /// Conjugate gradients with the diagonal.
+    pub(super) fn iterate(&self, pore: &mut [f64], work: &mut Work, limit2: f64) {
         let n = pore.len();
-        let over = |i: usize, r: f64| {
-            if diagonal[i] > 0.0 {
-                r / diagonal[i]
-            } else {
-                0.0
-            }
-        };
-        let scalar = |i: usize, r: &[f64]| [r[i] * r[i], r[i] * over(i, r[i])];
-        let [mut norm2, mut rz] = self.workers.sums(n, |i| scalar(i, residual));
+        let [mut norm2, mut rz] = self.workers.sums(n, |i| work.squares(i));
         // The last solve's directions are no part of the state.
-        direction.fill(0.0);
+        work.direction.fill(0.0);
         let mut beta = 0.0;
         for _ in 0..MOST_ITERATIONS {
             if norm2 <= limit2 || rz <= 0.0 {
                 return;
             }
-            let r = &*residual;
-            self.workers
-                .each(direction, |i, d| *d = over(i, r[i]) + beta * *d);
-            let d = &*direction;
-            let curvature =
-                self.workers
-                    .blocks_sum(&self.lists.blocks, product, |block, first, out| {
-                        let mut sum = 0.0;
-                        in_lanes!(
-                            self.arch,
-                            |lanes| for (row, o) in out.iter_mut().enumerate() {
-                                let i = first + row;
-                                *o = 0.0;
-                                if diagonal[i] > 0.0 {
-                                    let others = self.weighted_sum(lanes, d, block, row);
-                                    *o = diagonal[i] * d[i] - self.volume[i] * others;
-                                    sum += d[i] * *o;
-                                }
-                            }
-                        );
-                        sum
-                    });
+            let (a, r) = (&work.diagonal, &work.residual);
+            self.workers.each(&mut work.direction, |i, d| {
+                *d = descent(a[i], r[i]) + beta * *d;
+            });
+            let curvature = self.seepage_product(work);
             if curvature.is_nan() || curvature <= 0.0 {
                 return;
             }
             let step = rz / curvature;
-            let q = &*product;
-            self.workers.both(pore, residual, |i, p, r| {
+            let (d, q) = (&work.direction, &work.product);
+            self.workers.both(pore, &mut work.residual, |i, p, r| {
                 *p += step * d[i];
                 *r -= step * q[i];
                 []
             });
-            let [next2, next] = self.workers.sums(n, |i| scalar(i, residual));
+            let [next2, next] = self.workers.sums(n, |i| work.squares(i));
             (norm2, beta, rz) = (next2, next / rz, next);
         }
+    }
+}
+
+impl Work {
+    /// Particle i's parts of r.r and r.z, r the residual and z the descent.
+    #[inline]
+    fn squares(&self, i: usize) -> [f64; 2] {
+        let r = self.residual[i];
+        [r * r, r * descent(self.diagonal[i], r)]
+    }
+}
+
+/// A residual over the diagonal, 0 for what has no pores.
+#[inline]
+fn descent(diagonal: f64, residual: f64) -> f64 {
+    if diagonal > 0.0 {
+        residual / diagonal
+    } else {
+        0.0
     }
 }
