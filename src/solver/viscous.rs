@@ -13,7 +13,7 @@ use crate::state::State;
 use super::Solver;
 use super::meeting::{HARDER, LIKE, OTHER, SOFTER, add_differences, share};
 use super::mirror::{add_image_gradient, image_drag, image_force};
-use super::pair::Block;
+use super::pair::{Block, WallRow};
 use super::record::{Record, Stresses, stresses};
 use super::reflect::{add_reflected_gradient, reflected_drag, reflected_force};
 use super::turning::add_turned_force;
@@ -140,27 +140,9 @@ impl<const D: usize> Solver<D> {
                             f[0] -= self.ring_drag(i, &own.velocity(), &own.stress(), share);
                         }
                         if let Some(w) = wall {
-                            let stress = w.stress_force(&own.stress());
-                            let image = image_force(block.images_of(w), &own.stress(), |j| {
-                                records[j].stress()
-                            });
-                            let v = own.velocity();
-                            let drag = apply(&w.c, &v);
-                            let less = image_drag(block.images_of(w), &v, |j| {
-                                (records[j].velocity(), self.between(i, j))
-                            });
-                            let (ahead, sheared) = (
-                                reflected_force(block.reflections_of(w), &own.stress(), |j| {
-                                    records[j].stress()
-                                }),
-                                reflected_drag(block.reflections_of(w), &v, |j| {
-                                    (records[j].velocity(), self.between(i, j))
-                                }),
-                            );
+                            let walls = self.wall_force(i, w, block, records, with_walls);
                             for k in 0..D {
-                                let drive = if with_walls { w.cv[k] } else { 0.0 };
-                                let pairs = 2.0 * (drag[k] - drive) - less[k] + sheared[k];
-                                f[k] += stress[k] + image[k] + ahead[k] - share * pairs;
+                                f[k] += walls[k];
                             }
                         }
                         let (value, part) = finish(i, &scale(self.width * self.volume[i], &f));
@@ -170,6 +152,36 @@ impl<const D: usize> Solver<D> {
                 );
                 sum
             })
+    }
+
+    /// What walls give row i, images across flat ones included.
+    #[inline(always)]
+    fn wall_force(
+        &self,
+        i: usize,
+        w: &WallRow<D>,
+        block: &Block<D>,
+        records: &[Record],
+        with_walls: bool,
+    ) -> Vector<D> {
+        let (v, tau) = (records[i].velocity(), records[i].stress());
+        let stress_of = |j: usize| records[j].stress();
+        let other = |j: usize| (records[j].velocity(), self.between(i, j));
+        let (images, reflections) = (block.images_of(w), block.reflections_of(w));
+        let stress = w.stress_force(&tau);
+        let image = image_force(images, &tau, stress_of);
+        let ahead = reflected_force(reflections, &tau, stress_of);
+        let drag = apply(&w.c, &v);
+        let less = image_drag(images, &v, other);
+        let sheared = reflected_drag(reflections, &v, other);
+        let share = self.numerics.pair_viscosity_share;
+        let mut f = [0.0; D];
+        for k in 0..D {
+            let drive = if with_walls { w.cv[k] } else { 0.0 };
+            let pairs = 2.0 * (drag[k] - drive) - less[k] + sheared[k];
+            f[k] = stress[k] + image[k] + ahead[k] - share * pairs;
+        }
+        f
     }
 
     /// The pair form's viscosity between two particles, 0 where both have none: the harmonic mean [Pa s].
