@@ -2,7 +2,9 @@
 //! blocks, started from what the last steps let expect (`guess`). With the exact yield it is solved a few times a step, each time with
 //! the stress of the last projection beside it (`plastic`).
 
-use crate::math::{Tensor, Vector, apply, dot, scale, sub};
+mod conjugate_gradients;
+
+use crate::math::{Tensor, Vector, dot, scale, sub};
 use crate::state::State;
 
 use super::lists::mean;
@@ -29,10 +31,6 @@ struct Limit {
     /// Of a step's fall, and of rounding.
     floor: f64,
 }
-
-/// Share of the tolerance below which a solve needs no iteration at all [1]. Above it takes one, even where the first guess is
-/// within the tolerance: what a solve leaves, the next one starts with, so that in steady flow it would add up step by step.
-const SETTLED: f64 = 1e-3;
 
 /// Iterations of the yield in a step in which friction would turn what holds together round (`friction_drives`).
 const MOST_TURNING: u32 = 10;
@@ -159,134 +157,6 @@ impl<const D: usize> Solver<D> {
                 Ok(spent)
             }
         }
-    }
-
-    /// From the velocity of `work.current`, in place.
-    fn conjugate_gradients(
-        &self,
-        state: &State<D>,
-        dt: f64,
-        limit: &Limit,
-        work: &mut Viscous<D>,
-    ) -> Result<u32, SolverError> {
-        let (workers, mass) = (&self.workers, &state.grains.mass);
-        let mut norm2 = self.first_residual(state, dt, work);
-        let limit = limit.of(norm2.sqrt());
-        if norm2.is_finite() {
-            norm2 = self.settle_explicit(norm2, limit, work);
-        }
-        let Viscous {
-            current,
-            explicit,
-            searched,
-            jacobi,
-            residual,
-            descent,
-            direction,
-            product,
-            ..
-        } = work;
-        if !norm2.is_finite() {
-            return Err(self.not_finite(state, "viscous force", |i| {
-                residual[i].iter().all(|v| v.is_finite())
-            }));
-        }
-        let (mut rz, mut beta) = (0.0, 0.0);
-        let mut iterations = 0;
-        while norm2 > limit * limit || iterations == 0 && norm2 > (SETTLED * limit).powi(2) {
-            if iterations == self.numerics.solver_max_iterations {
-                return Err(SolverError::NotConverged {
-                    time: state.time,
-                    iterations,
-                    residual: norm2.sqrt(),
-                    allowed: limit,
-                });
-            }
-            if iterations == 0 {
-                [rz] = workers.both(descent, residual, |i, z, r| {
-                    *z = apply(&jacobi[i], r);
-                    [dot(r, z)]
-                });
-            }
-            // The last solve's directions are no part of the state.
-            let first = iterations == 0;
-            workers.each(direction, |i, d| {
-                *d = if first {
-                    descent[i]
-                } else {
-                    std::array::from_fn(|k| descent[i][k] + beta * d[k])
-                };
-            });
-            self.stress(direction, searched, false, explicit);
-            let mut curvature = self.force(searched, product, false, explicit, |i, f| {
-                let d = &direction[i];
-                let own = self.inertia(mass[i], i, d);
-                let q: Vector<D> = std::array::from_fn(|k| own[k] - dt * f[k]);
-                (q, dot(d, &q))
-            });
-            self.each_friction(searched, None, |i, push| {
-                for k in 0..D {
-                    product[i][k] += dt * push[k];
-                    curvature += dt * direction[i][k] * push[k];
-                }
-            });
-            if curvature.is_nan() || curvature <= 0.0 {
-                return Err(self.not_finite(state, "viscous solve", |i| {
-                    product[i].iter().all(|v| v.is_finite())
-                }));
-            }
-            let step = rz / curvature;
-            workers.each(current, |i, c| c.add_scaled(step, &searched[i]));
-            let [r2, next] = workers.both(descent, residual, |i, z, r| {
-                *r = std::array::from_fn(|k| r[k] - step * product[i][k]);
-                *z = apply(&jacobi[i], r);
-                [dot(r, r), dot(r, z)]
-            });
-            (norm2, beta, rz) = (r2, next / rz, next);
-            iterations += 1;
-        }
-        Ok(iterations)
-    }
-
-    /// residual = M (v* - v) + dt F(v), walls moving; returns its square.
-    fn first_residual(&self, state: &State<D>, dt: f64, work: &mut Viscous<D>) -> f64 {
-        let Viscous {
-            current,
-            whole,
-            fixed,
-            residual,
-            held,
-            ..
-        } = work;
-        let start = if fixed.is_empty() {
-            &*current
-        } else {
-            self.workers.each(whole, |i, w| {
-                let mut tau = current[i].stress();
-                add(&mut tau, &fixed[i]);
-                *w = Record::of_stress(&tau, &current[i].velocity());
-            });
-            &*whole
-        };
-        let mass = &state.grains.mass;
-        let norm2 = self.force(start, residual, true, &[], |i, f| {
-            let (aim, v) = (&self.prediction[i].velocity, start[i].velocity::<D>());
-            let change = self.inertia(mass[i], i, &sub(aim, &v));
-            let r: Vector<D> = std::array::from_fn(|k| change[k] + dt * f[k]);
-            (r, dot(&r, &r))
-        });
-        if held.is_empty() {
-            return norm2;
-        }
-        self.each_friction(start, Some(held), |i, push| {
-            for k in 0..D {
-                residual[i][k] -= dt * push[k];
-            }
-        });
-        let [norm2] = self
-            .workers
-            .sums(residual.len(), |i| [dot(&residual[i], &residual[i])]);
-        norm2
     }
 
     /// What a step's solves may leave, from v* and the first guess of the velocity: the same in every inertial frame (docs/theory.md, E12).
