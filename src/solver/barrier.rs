@@ -16,7 +16,11 @@
 //!   a_i -= min(mu |a_i|, |u|/dt) u/|u|,   u the velocity along the wall, against its surface                 (W5)
 
 use crate::kernel::WendlandC2;
+use crate::material::{Friction as _, Material};
 use crate::math::{Vector, dot, norm, scale, sub};
+
+use super::Solver;
+use super::pair::WallRow;
 
 /// The share of wall from where on it pushes [1]: that on a flat surface.
 const SURFACE: f64 = 0.5;
@@ -169,6 +173,55 @@ impl<const D: usize> Barrier<D> {
         let out = -sums.rate / (size * SOFT * c).max(f64::MIN_POSITIVE);
         let left = 1.0 - LOST * out.clamp(0.0, 1.0);
         4.0 * left * self.most.min(c * c) * (sums.share - SURFACE)
+    }
+}
+
+impl<const D: usize> Solver<D> {
+    /// Sets the push of (W5), and what rubs by it, on a particle of a material at x, moving at v, by the wall points `near` it.
+    pub(super) fn hold_off(
+        &self,
+        (x, v): (&Vector<D>, &Vector<D>),
+        material: &Material,
+        near: &[u32],
+        w: &mut WallRow<D>,
+    ) {
+        let nearness = self.nearness(x, v, near, material);
+        w.barrier = self.barrier.push(&nearness, self.sound_speed_of(material));
+        if w.barrier > 0.0 {
+            w.push = nearness.push(w.barrier);
+            w.rub = nearness.rub();
+        }
+    }
+
+    /// What (W5) is made of: sums over all wall points near a particle at xi, moving at vi.
+    fn nearness(
+        &self,
+        xi: &Vector<D>,
+        vi: &Vector<D>,
+        near: &[u32],
+        material: &Material,
+    ) -> Nearness<D> {
+        let mut nearness = Nearness::NONE;
+        let rough = material.law.static_friction();
+        for &wall in near {
+            let (x, r) = self.wall_offset(xi, wall);
+            let weight = self.walls.weight[wall as usize];
+            let against = sub(vi, &self.point_velocity(wall));
+            let spec = &self.walls.groups[self.walls.group[wall as usize] as usize];
+            let friction = match (rough > 0.0, spec.free_slip) {
+                (true, true) => spec.friction,
+                (true, false) => rough,
+                (false, _) => 0.0,
+            };
+            let face = (friction, &self.walls.velocity[wall as usize]);
+            self.barrier
+                .add(&mut nearness, (&x, r), weight, &against, face);
+            if let Some((x, r)) = self.wall_image(xi, wall) {
+                self.barrier
+                    .add(&mut nearness, (&x, r), weight, &against, face);
+            }
+        }
+        nearness
     }
 }
 

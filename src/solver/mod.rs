@@ -72,6 +72,7 @@ mod turning;
 mod validity;
 mod viscous;
 mod wall_contact;
+mod wall_faces;
 mod wall_friction;
 mod wall_geometry;
 mod wall_row;

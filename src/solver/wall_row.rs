@@ -4,22 +4,51 @@
 //! Symbols: x = x_i - x_w, F = W'(r)/r <= 0, g = V_i w F x, v_w velocity of the point's wall where the particle is, n normal of its face
 //! towards the material, in bends of what the particle sees of it (`bend`), P = n n^T at free slip and 1 at no slip.
 
-use crate::material::{Friction as _, Material};
-use crate::math::{Tensor, Vector, add_outer, along, apply, dot, scale, skew, sub, trace};
+use crate::boundary::GroupSpec;
+use crate::math::{Tensor, Vector, add_outer, along, dot, scale, sub, trace};
 use crate::state::State;
 
 use super::Solver;
-use super::barrier::{Nearness, Rub};
-use super::bend::Turning;
+use super::barrier::Rub;
+use super::bend::Bend;
 use super::face_sums::FaceSums;
-use super::flat_face::FlatFace;
 use super::fluid_row::Row;
 use super::pair::WallRow;
 use super::wall_contact::Contact;
+use super::wall_faces::WallFaces;
 
 /// Distance to the nearest wall point from which on (W5) cannot act, over the spacing [1]: on the surface it is 0.87 at most, and
 /// even a point missing inside a wall has its neighbours nearer.
 const CLEAR: f64 = 1.1;
+
+/// Particle i before walls.
+struct Particle<'s, const D: usize> {
+    i: usize,
+    x: &'s Vector<D>,
+    v: &'s Vector<D>,
+    is_fluid: bool,
+    /// Whether it is of grains that a fluid presses on, beside it or in its pores.
+    bears_fluid: bool,
+}
+
+/// A wall point as it sees it.
+struct Seen<'s, const D: usize> {
+    wall: u32,
+    group: u16,
+    spec: &'s GroupSpec,
+    /// x and its square.
+    x: Vector<D>,
+    r2: f64,
+    /// V_i w F, and g of it.
+    vf: f64,
+    g: Vector<D>,
+    /// v_w.
+    velocity: Vector<D>,
+    /// Of the face, as far as it is needed: 0 where neither slip nor fluid asks for it.
+    normal: Vector<D>,
+    /// The bend of a face with free slip that it lies in.
+    bend: Option<Bend<D>>,
+}
 
 impl<const D: usize> Solver<D> {
     /// Adds to the sums of row i what the wall points `near` it give, and to `contacts` the faces with friction; `None` where
@@ -34,220 +63,147 @@ impl<const D: usize> Solver<D> {
         sums: &mut Row<D>,
         contacts: &mut Vec<Contact<D>>,
     ) -> Option<WallRow<D>> {
-        let first_contact = contacts.len();
         let grains = &state.grains;
-        let (xi, vi) = (&grains.position[i], &grains.velocity[i]);
-        let support2 = self.kernel.support().powi(2);
-        let dissipation = D as f64 + 2.0;
         let material = &self.materials[grains.phase[i] as usize];
         let is_fluid = material.is_fluid();
-        let bears_fluid = meets_fluid || (self.has_pores && !is_fluid);
-        let mut w = WallRow::new(row as u32);
-        let mut flat = FlatFace::NONE;
-        let mut face: Option<FaceSums<D>> = None;
+        let own = Particle {
+            i,
+            x: &grains.position[i],
+            v: &grains.velocity[i],
+            is_fluid,
+            bears_fluid: meets_fluid || (self.has_pores && !is_fluid),
+        };
+        let mut faces = WallFaces::new(self, (i, row), contacts);
         let mut nearest2 = f64::INFINITY;
-        let mut turning = Turning::NONE;
         for &wall in near {
-            let x = self
-                .periodic
-                .difference(xi, &self.walls.position[wall as usize]);
-            let r2 = dot(&x, &x);
-            let weight = self.walls.weight[wall as usize];
-            if r2 >= support2 || r2 == 0.0 || weight == 0.0 {
+            let Some(point) = self.see_wall(state, &own, wall, faces.last()) else {
                 continue;
-            }
-            nearest2 = nearest2.min(r2);
-            let normal = self.face_normal(xi, wall, is_fluid, face.as_ref(), state);
-            let group = self.walls.group[wall as usize];
-            let spec = &self.walls.groups[group as usize];
-            let bend = if spec.free_slip {
-                self.bend_at(wall, &x, &normal)
-            } else {
-                None
             };
-            if face
-                .as_ref()
-                .is_none_or(|f| !f.has(group, &normal, bend.as_ref()))
-            {
-                let next = FaceSums::new(group, normal, spec.free_slip, bend);
-                if let Some(done) = face.replace(next) {
-                    self.add_turn(&done, &mut w, &mut turning);
-                    self.add_face(&done, i, (contacts, first_contact), &mut w, &mut flat);
-                }
-            }
-            let Some(face) = &mut face else { continue };
-            let vf = self.wall_volume(i, wall, weight) * self.kernel.f(r2.sqrt());
-            let g = scale(vf, &x);
-            let vw = &self.wall_velocity_at(wall, &x);
-            face.velocity = *vw;
-            add_outer(&mut face.around, -1.0, &x, &g);
-            face.add(&g, 2.0 * dissipation / (-vf * r2), vw);
-            if spec.friction > 0.0 {
-                face.add_length(self.ring_part(i, wall), &g);
-            }
-            if is_fluid {
-                face.add_moment(-vf, &x, vw);
-                if !face.free_slip {
-                    face.lean -= vf * dot(&normal, &x).powi(2);
-                }
-            } else if bears_fluid && face.free_slip {
-                face.add_moment(-vf, &along(&normal, &x), vw);
-            }
-            add_outer(&mut sums.moment, -1.0, &x, &g);
-            for (side, g) in sums.side.iter_mut().zip(&g) {
-                *side += g;
-            }
-            sums.nearness -= vf;
-            let v = sub(vi, vw);
-            let seen = face.seen(&v);
-            sums.add_pair(&x, 2.0 * dot(&seen, &x), -vf, self.has_fluids);
-            // Sliding along a free-slip face costs nothing: only the part it sees bounds the step, unless the face
-            // itself comes along.
-            let v = if spec.moves { v } else { seen };
-            sums.speed2 = sums.speed2.max(dot(&v, &v));
+            nearest2 = nearest2.min(point.r2);
+            let face = faces.of_points(point.group, &point.normal, point.bend);
+            self.add_to_face(&own, &point, face);
+            self.add_to_row(&own, &point, face, sums);
         }
-        let last = face?;
-        self.add_turn(&last, &mut w, &mut turning);
-        if !self.geometry.is_axisymmetric() {
-            turning.complete(&sums.moment, &mut w);
-        }
-        self.add_face(&last, i, (contacts, first_contact), &mut w, &mut flat);
-        flat.smooth(&mut w, self.numerics.spacing);
+        let mut w = faces.finish(&sums.moment)?;
         if nearest2 < (CLEAR * self.numerics.spacing).powi(2) {
-            let nearness = self.nearness(xi, vi, near, material);
-            w.barrier = self.barrier.push(&nearness, self.sound_speed_of(material));
-            if w.barrier > 0.0 {
-                w.push = nearness.push(w.barrier);
-                w.rub = nearness.rub();
-            }
+            self.hold_off((own.x, own.v), material, near, &mut w);
         }
-        let wall_gradient = w.gradient(vi, true);
+        let wall_gradient = w.gradient(own.v, true);
         for a in 0..D {
             for c in 0..D {
                 sums.gradient[a][c] += wall_gradient[a][c];
             }
         }
-        let share = (w.divergence(vi) - trace(&wall_gradient)) / D as f64;
+        let share = (w.divergence(own.v) - trace(&wall_gradient)) / D as f64;
         for k in 0..D {
             sums.gradient[k][k] += share;
         }
         Some(w)
     }
 
-    /// Normal of the face that a wall point belongs to, as far as a particle at xi needs it: 0 where neither slip nor fluid asks
-    /// for it. `last` is the face of the point before: one gate has one normal for all its points.
+    /// `None` beyond the support. `last`: the face of the point before.
+    #[inline(always)]
+    fn see_wall(
+        &self,
+        state: &State<D>,
+        own: &Particle<'_, D>,
+        wall: u32,
+        last: Option<&FaceSums<D>>,
+    ) -> Option<Seen<'_, D>> {
+        let x = self
+            .periodic
+            .difference(own.x, &self.walls.position[wall as usize]);
+        let r2 = dot(&x, &x);
+        let weight = self.walls.weight[wall as usize];
+        if r2 >= self.kernel.support().powi(2) || r2 == 0.0 || weight == 0.0 {
+            return None;
+        }
+        let normal = self.face_normal(own, wall, last, state);
+        let group = self.walls.group[wall as usize];
+        let spec = &self.walls.groups[group as usize];
+        let bend = if spec.free_slip {
+            self.bend_at(wall, &x, &normal)
+        } else {
+            None
+        };
+        let vf = self.wall_volume(own.i, wall, weight) * self.kernel.f(r2.sqrt());
+        Some(Seen {
+            wall,
+            group,
+            spec,
+            x,
+            r2,
+            vf,
+            g: scale(vf, &x),
+            velocity: self.wall_velocity_at(wall, &x),
+            normal,
+            bend,
+        })
+    }
+
+    /// Normal of the face that a wall point belongs to, as far as the particle needs it: 0 where neither slip nor fluid asks for it.
+    /// `last` is the face of the point before: one gate has one normal for all its points.
     #[inline(always)]
     fn face_normal(
         &self,
-        xi: &Vector<D>,
+        own: &Particle<'_, D>,
         wall: u32,
-        is_fluid: bool,
         last: Option<&FaceSums<D>>,
         state: &State<D>,
     ) -> Vector<D> {
         let group = self.walls.group[wall as usize];
-        if !is_fluid && !self.walls.groups[group as usize].free_slip {
+        if !own.is_fluid && !self.walls.groups[group as usize].free_slip {
             return [0.0; D];
         }
         match last {
             Some(f) if f.group == group && usize::from(group) >= self.fixed_groups => f.normal,
-            _ => self.wall_normal(xi, wall, state),
+            _ => self.wall_normal(own.x, wall, state),
         }
     }
 
-    /// Adds the sums of a face to those of the row.
+    /// Adds a point to the sums of its face.
     #[inline(always)]
-    fn add_face(
+    fn add_to_face(&self, own: &Particle<'_, D>, point: &Seen<'_, D>, face: &mut FaceSums<D>) {
+        let (x, g, vw) = (&point.x, &point.g, &point.velocity);
+        face.velocity = *vw;
+        add_outer(&mut face.around, -1.0, x, g);
+        let c = 2.0 * (D as f64 + 2.0) / (-point.vf * point.r2);
+        face.add(g, c, vw);
+        if point.spec.friction > 0.0 {
+            face.add_length(self.ring_part(own.i, point.wall), g);
+        }
+        if own.is_fluid {
+            face.add_moment(-point.vf, x, vw);
+            if !face.free_slip {
+                face.lean -= point.vf * dot(&point.normal, x).powi(2);
+            }
+        } else if own.bears_fluid && face.free_slip {
+            face.add_moment(-point.vf, &along(&point.normal, x), vw);
+        }
+    }
+
+    /// Adds a point to those sums of the row that do not ask whose face it is in, and what the particle sees of its motion.
+    #[inline(always)]
+    fn add_to_row(
         &self,
+        own: &Particle<'_, D>,
+        point: &Seen<'_, D>,
         face: &FaceSums<D>,
-        i: usize,
-        (contacts, first): (&mut Vec<Contact<D>>, usize),
-        w: &mut WallRow<D>,
-        flat: &mut FlatFace<D>,
+        sums: &mut Row<D>,
     ) {
-        let n = face.across();
-        for a in 0..D {
-            w.s[a] += face.s[a];
-            w.cv[a] += face.dragged[a];
-            w.moment_drive[a] += face.moment_drive[a];
-            for b in 0..D {
-                w.moment[a][b] += face.moment[a][b];
-                w.c[a][b] += face.pair[a][b];
-                let p = if face.free_slip {
-                    n[a] * n[b]
-                } else {
-                    f64::from(u8::from(a == b))
-                };
-                for c in 0..D {
-                    w.k[a][b][c] += p * face.s[c];
-                    w.q[a][c] += p * face.carried[b][c];
-                }
-            }
+        add_outer(&mut sums.moment, -1.0, &point.x, &point.g);
+        for (side, g) in sums.side.iter_mut().zip(&point.g) {
+            *side += g;
         }
-        let moves = self.wall_moves(face.group);
-        if moves {
-            w.drive += trace(&face.carried);
-        }
-        let n = &face.normal;
-        if face.lean > 0.0 {
-            for a in 0..D {
-                w.lean[a][a] += face.lean;
-            }
-            add_outer(&mut w.lean, -face.lean, n, n);
-        }
-        let rubs = face.free_slip && self.walls.groups[face.group as usize].friction > 0.0;
-        flat.add(face, rubs && face.bend.is_none(), moves);
-        if !rubs {
-            return;
-        }
-        let to_area = -2.0 * self.volume[i] * self.width;
-        let area = to_area * dot(&face.s, n);
-        let drive = scale(to_area, &apply(&face.carried, n));
-        Contact::gather(contacts, first, (i, face.group), n, area, &drive);
-    }
-
-    /// Adds what turns with a face to the row: the rotation that a bend makes of sliding, and the wall's own.
-    #[inline(always)]
-    fn add_turn(&self, face: &FaceSums<D>, w: &mut WallRow<D>, turning: &mut Turning<D>) {
-        let spin = &self.walls.groups[face.group as usize].spin;
-        if let Some(bend) = &face.bend {
-            w.add_bend(&bend.rate, &face.around, &face.velocity);
-        }
-        turning.add(face.bend.as_ref(), spin, &face.around, &face.velocity);
-        if *spin != [0.0; 3] {
-            w.add_spin(&skew(spin), &face.around);
-        }
-    }
-
-    /// What (W5) is made of: sums over all wall points near a particle at xi, moving at vi.
-    fn nearness(
-        &self,
-        xi: &Vector<D>,
-        vi: &Vector<D>,
-        near: &[u32],
-        material: &Material,
-    ) -> Nearness<D> {
-        let mut nearness = Nearness::NONE;
-        let rough = material.law.static_friction();
-        for &wall in near {
-            let (x, r) = self.wall_offset(xi, wall);
-            let weight = self.walls.weight[wall as usize];
-            let against = sub(vi, &self.point_velocity(wall));
-            let spec = &self.walls.groups[self.walls.group[wall as usize] as usize];
-            let friction = match (rough > 0.0, spec.free_slip) {
-                (true, true) => spec.friction,
-                (true, false) => rough,
-                (false, _) => 0.0,
-            };
-            let face = (friction, &self.walls.velocity[wall as usize]);
-            self.barrier
-                .add(&mut nearness, (&x, r), weight, &against, face);
-            if let Some((x, r)) = self.wall_image(xi, wall) {
-                self.barrier
-                    .add(&mut nearness, (&x, r), weight, &against, face);
-            }
-        }
-        nearness
+        sums.nearness -= point.vf;
+        let v = sub(own.v, &point.velocity);
+        let seen = face.seen(&v);
+        let approach = 2.0 * dot(&seen, &point.x);
+        sums.add_pair(&point.x, approach, -point.vf, self.has_fluids);
+        // Sliding along a free-slip face costs nothing: only the part it sees bounds the step, unless the face
+        // itself comes along.
+        let v = if point.spec.moves { v } else { seen };
+        sums.speed2 = sums.speed2.max(dot(&v, &v));
     }
 }
 
