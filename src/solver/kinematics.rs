@@ -8,7 +8,7 @@ use crate::state::State;
 
 use super::Solver;
 use super::fluid_row::Row;
-use super::meeting::{KINDS, SOFTER};
+use super::meeting::{KINDS, Neighbours};
 use super::mirror::add_image_gradient;
 use super::pair::Block;
 use super::record::Record;
@@ -99,7 +99,6 @@ impl<const D: usize> Solver<D> {
         block.forget_pairs(if MEET { KINDS - 1 } else { 0 });
         let mut near = std::mem::take(&mut block.near);
         let mut found = std::mem::take(&mut block.found);
-        let mut contacts = std::mem::take(&mut block.contacts);
         for (row, o) in out.iter_mut().enumerate() {
             let i = first + row;
             let (x, v) = (&state.grains.position[i], &state.grains.velocity[i]);
@@ -109,48 +108,22 @@ impl<const D: usize> Solver<D> {
                 (count, kinds) = self.sort_by_kind(state, i, &mut near, count, &mut found);
                 block.tell_kinds(kinds);
             }
+            let near = Neighbours {
+                all: &near[..count],
+                kinds,
+            };
+            let own = (i, x, v);
             let mut sums = self.fluid_row::<L, RINGS, FLUIDS, MEET>(
                 lanes,
                 records,
-                (i, x, v),
+                own,
                 block,
-                (&near[..count], kinds),
+                (near.all, near.kinds),
             );
-            let mut alone = kinds[0] == count / LANES;
-            let meets_fluid = kinds[SOFTER as usize - 1] < count / LANES;
-            if !block.wall_row(row).is_empty()
-                && let Some(mut w) = self.wall_row(
-                    state,
-                    (i, row, meets_fluid),
-                    block.wall_row(row),
-                    &mut sums,
-                    &mut contacts,
-                )
-            {
-                if FLUIDS {
-                    let first_image = block.images.len() as u32;
-                    w.lean_less = self.find_images(state, i, block, &near[..count], &w.lean);
-                    w.images = (first_image, block.images.len() as u32);
-                    let v = &state.grains.velocity;
-                    add_image_gradient(block.images_of(&w), i, v, &mut sums.images);
-                }
-                if !self.faces.is_empty() {
-                    let first = block.reflections.len() as u32;
-                    self.find_reflections(state, i, block, &near[..count], &mut sums);
-                    w.reflections = (first, block.reflections.len() as u32);
-                    let v = &state.grains.velocity;
-                    let into = if FLUIDS {
-                        &mut sums.images
-                    } else {
-                        &mut sums.gradient
-                    };
-                    add_reflected_gradient(block.reflections_of(&w), i, v, into);
-                }
-                block.wall_rows.push(w);
-                alone = false;
-            }
+            let sees_walls = self.add_walls::<FLUIDS>(state, (i, row), block, near, &mut sums);
             let phase = state.grains.phase[i];
             if !self.turns.is_empty() {
+                let alone = near.are_like() && !sees_walls;
                 block.turning.push(self.turn(&mut sums, phase, alone));
             }
             *o = self.finish(&sums, phase, i, v);
@@ -160,7 +133,48 @@ impl<const D: usize> Solver<D> {
         }
         block.near = near;
         block.found = found;
+    }
+
+    /// Adds what walls give row i to its sums, with images across flat ones, and to the block; whether it sees any.
+    #[inline(always)]
+    fn add_walls<const FLUIDS: bool>(
+        &self,
+        state: &State<D>,
+        (i, row): (usize, usize),
+        block: &mut Block<D>,
+        near: Neighbours<'_>,
+        sums: &mut Row<D>,
+    ) -> bool {
+        if block.wall_row(row).is_empty() {
+            return false;
+        }
+        let mut contacts = std::mem::take(&mut block.contacts);
+        let own = (i, row, near.have_softer());
+        let seen = self.wall_row(state, own, block.wall_row(row), sums, &mut contacts);
         block.contacts = contacts;
+        let Some(mut w) = seen else {
+            return false;
+        };
+        let v = &state.grains.velocity;
+        if FLUIDS {
+            let first = block.images.len() as u32;
+            w.lean_less = self.find_images(state, i, block, near.all, &w.lean);
+            w.images = (first, block.images.len() as u32);
+            add_image_gradient(block.images_of(&w), i, v, &mut sums.images);
+        }
+        if !self.faces.is_empty() {
+            let first = block.reflections.len() as u32;
+            self.find_reflections(state, i, block, near.all, sums);
+            w.reflections = (first, block.reflections.len() as u32);
+            let into = if FLUIDS {
+                &mut sums.images
+            } else {
+                &mut sums.gradient
+            };
+            add_reflected_gradient(block.reflections_of(&w), i, v, into);
+        }
+        block.wall_rows.push(w);
+        true
     }
 
     /// From the sums of row i, at velocity v, to what the rheology needs.

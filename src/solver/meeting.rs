@@ -32,6 +32,33 @@ pub(super) const HARDER: u8 = 2;
 /// A fluid beside grains: m_ij = 0, m_ji = 2.
 pub(super) const SOFTER: u8 = 3;
 
+/// Neighbours of one row within the support in whole groups, those of each kind together.
+#[derive(Clone, Copy)]
+pub(super) struct Neighbours<'a> {
+    pub(super) all: &'a [u32],
+    /// How many groups are of the first kind, of the first two and of the first three.
+    pub(super) kinds: [usize; KINDS - 1],
+}
+
+impl Neighbours<'_> {
+    #[inline(always)]
+    pub(super) fn groups(&self) -> &[[u32; LANES]] {
+        self.all.as_chunks::<LANES>().0
+    }
+
+    /// Whether all are of the first kind.
+    #[inline(always)]
+    pub(super) fn are_like(&self) -> bool {
+        self.kinds[LIKE as usize] == self.groups().len()
+    }
+
+    /// Whether there are fluids among them, and they are a grain's.
+    #[inline(always)]
+    pub(super) fn have_softer(&self) -> bool {
+        self.kinds[HARDER as usize] < self.groups().len()
+    }
+}
+
 impl<const D: usize> Solver<D> {
     /// Sorts the `count` neighbours of particle i in `near` by kind, each filled up with i to whole groups. Returns their number, and
     /// the numbers of groups of the first kind, of the first two and of the first three. `found` is room to work in.
