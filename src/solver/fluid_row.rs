@@ -2,13 +2,18 @@
 //!
 //! Symbols: F = W'(r)/r <= 0, g = V_j F x, x = x_i - x_j, v = v_i - v_j, gamma shear rate.
 
-use crate::math::{Four, LANES, Lanes, Quad, Tensor, Vector, dot};
+mod pairs;
+mod sums;
+
+use crate::math::{Four, LANES, Lanes, Tensor, Vector, dot};
 
 use super::Solver;
 use super::directions;
-use super::meeting::KINDS;
+use super::meeting::Neighbours;
 use super::pair::Block;
 use super::record::{Record, motions};
+use pairs::Own;
+use sums::Sums;
 
 /// Least r^2 over h^2 that a pair form divides by: what fills the last group of a row has r = 0.
 pub(super) const LEAST_DISTANCE2: f64 = 1e-12;
@@ -110,132 +115,41 @@ impl<const D: usize> Solver<D> {
         full
     }
 
-    /// Coefficients, appended to the block, and sums of particle i against the neighbours `near`. RINGS: particles are
-    /// rings; FLUIDS: some material is a fluid; MEET: it meets others, and `kinds` says how many groups are of the first kind, of the
-    /// first two, and so on.
+    /// Coefficients, appended to the block, and sums of particle i against its neighbours. RINGS: particles are rings; FLUIDS:
+    /// some material is a fluid; MEET: it meets others.
     #[inline(always)]
     pub(super) fn fluid_row<L: Lanes, const RINGS: bool, const FLUIDS: bool, const MEET: bool>(
         &self,
         lanes: L,
         records: &[Record],
-        (i, xi, vi): (usize, &Vector<D>, &Vector<D>),
+        (i, x, v): (usize, &Vector<D>, &Vector<D>),
         block: &mut Block<D>,
-        (near, kinds): (&[u32], [usize; KINDS - 1]),
+        near: Neighbours<'_>,
     ) -> Row<D> {
-        let dissipation = D as f64 + 2.0;
-        let zero = Four::splat(lanes, 0.0);
-        let one = Four::splat(lanes, 1.0);
-        let least = Four::splat(lanes, LEAST_DISTANCE2 * self.kernel.h * self.kernel.h);
-        let inverse_2h = Four::splat(lanes, self.kernel.inverse_support());
-        let slope = Four::splat(lanes, -self.kernel.slope());
-        let pair_form = Four::splat(lanes, -2.0 * dissipation);
-        let ring = if RINGS { self.rings[i].hoop } else { 0.0 };
-        let ring = Four::splat(lanes, ring);
-        let to_section = Four::splat(lanes, 0.5 / std::f64::consts::TAU);
-        let (mut here, mut own) = ([zero; D], [zero; D]);
-        for k in 0..D {
-            here[k] = Four::splat(lanes, xi[k]);
-            own[k] = Four::splat(lanes, vi[k]);
-        }
-        let (mut gradient, mut moment) = ([[zero; D]; D], [[zero; D]; D]);
-        let (mut pair_shear2, mut speed2) = (zero, zero);
-        let mut around = [zero; directions::COUNT];
-        let (mut side, mut nearness, mut curvature) = ([zero; D], zero, zero);
-        let falloff = Four::splat(lanes, -3.0 * self.kernel.inverse_support());
-        // Sums without harder and softer neighbours, and without softer ones.
-        let mut until = [(gradient, moment, pair_shear2); 2];
-        let groups = near.as_chunks::<LANES>().0;
+        let hoop = if RINGS { self.rings[i].hoop } else { 0.0 };
+        let own = Own::<L, D>::new(self, lanes, (x, v, hoop));
+        let mut sums = Sums::<L, D>::new(lanes);
+        let groups = near.groups();
         let (g, c) = block.next_row(groups);
         for (n, ((j, g), c)) in groups.iter().zip(g).zip(c).enumerate() {
             if MEET {
-                for (until, &end) in until.iter_mut().zip(&kinds[1..]) {
-                    if n == end {
-                        *until = (gradient, moment, pair_shear2);
-                    }
-                }
+                sums.note_kinds(n, &near.kinds);
             }
-            let other = motions::<L, D>(lanes, records, j);
-            let (mut x, mut v) = ([zero; D], [zero; D]);
-            let (mut r2, mut v2, mut vx) = (zero, zero, zero);
+            let pairs = own.beside::<RINGS>(&motions::<L, D>(lanes, records, j));
+            sums.add(&pairs);
+            if FLUIDS {
+                sums.add_for_fluids(&pairs, own.curvature(&pairs));
+            }
             for k in 0..D {
-                x[k] = self.periodic.nearest(lanes, k, here[k] - other.x[k]);
-                v[k] = own[k] - other.v[k];
-                r2 += x[k] * x[k];
-                v2 += v[k] * v[k];
-                vx += v[k] * x[k];
+                g[k] = pairs.g[k].store();
             }
-            let r = r2.sqrt();
-            let t = (one - r * inverse_2h).max(zero);
-            let mut volume = other.volume;
-            if RINGS {
-                volume = volume * ((ring + other.hoop) * to_section);
-            }
-            let vf = volume * (slope * t * t * t);
-            // Groups are filled up with i itself.
-            nearness -= r2.where_greater(zero, vf);
-            let inverse = one.over(r2.max(least) * vf);
-            let mut weights = [Quad::default(); D];
-            for b in 0..D {
-                let gb = vf * x[b];
-                weights[b] = gb.store();
-                side[b] += gb;
-                for a in 0..D {
-                    gradient[a][b] -= v[a] * gb;
-                    if a <= b {
-                        moment[a][b] -= x[a] * gb;
-                    }
-                }
-            }
-            // |g| r = |vf| r^2; (v.x)^2/r^2 = (v.x)^2 vf (1/(r^2 vf)).
-            let weight = vf * vf * inverse;
-            pair_shear2 -= weight * vx * vx;
-            if FLUIDS {
-                // F v^2 + F'/r (v.x)^2, with 1/r = r vf (1/(r^2 vf)).
-                let steeper = volume * (slope * t * t) * falloff;
-                curvature += vf * (v2 + steeper * r * inverse * vx * vx);
-            }
-            if FLUIDS {
-                let own = directions::of_neighbour(&x, weight, zero);
-                for (sum, own) in around.iter_mut().zip(own) {
-                    *sum -= own;
-                }
-            }
-            speed2 = speed2.max(v2);
-            *g = weights;
-            *c = (pair_form * inverse).store();
+            *c = own.pair_form(&pairs).store();
         }
-        let mut sums = Row {
-            pair_shear2: dissipation * pair_shear2.sum(),
-            directions: around.map(Four::sum),
-            curvature: curvature.sum(),
-            speed2: speed2.largest(),
-            side: side.map(Four::sum),
-            nearness: nearness.sum(),
-            ..Row::NONE
-        };
+        let mut row = sums.of_all();
         if MEET {
-            for (until, &end) in until.iter_mut().zip(&kinds[1..]) {
-                if end >= groups.len() {
-                    *until = (gradient, moment, pair_shear2);
-                }
-            }
-            // What the shear rate is compared with is of the same neighbours.
-            sums.pair_shear2 = dissipation * until[1].2.sum();
+            sums.note_kinds(groups.len(), &near.kinds);
+            sums.set_apart(&mut row);
         }
-        for a in 0..D {
-            for b in 0..D {
-                sums.gradient[a][b] = gradient[a][b].sum();
-                let m = moment[a.min(b)][a.max(b)];
-                sums.moment[a][b] = m.sum();
-                if MEET {
-                    let [(own, ..), (harder, most, _)] = &until;
-                    // Harder ones twice, softer ones not at all.
-                    let once_more = harder[a][b] - own[a][b];
-                    sums.images[a][b] = (once_more - (gradient[a][b] - harder[a][b])).sum();
-                    sums.softer[a][b] = (m - most[a.min(b)][a.max(b)]).sum();
-                }
-            }
-        }
-        sums
+        row
     }
 }

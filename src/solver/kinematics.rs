@@ -113,13 +113,8 @@ impl<const D: usize> Solver<D> {
                 kinds,
             };
             let own = (i, x, v);
-            let mut sums = self.fluid_row::<L, RINGS, FLUIDS, MEET>(
-                lanes,
-                records,
-                own,
-                block,
-                (near.all, near.kinds),
-            );
+            let mut sums =
+                self.fluid_row::<L, RINGS, FLUIDS, MEET>(lanes, records, own, block, near);
             let sees_walls = self.add_walls::<FLUIDS>(state, (i, row), block, near, &mut sums);
             let phase = state.grains.phase[i];
             if !self.turns.is_empty() {
