@@ -14,83 +14,94 @@ use super::lists::{Lists, SKIN};
 use super::packing::Packing;
 use super::ring_sections::Moved;
 use super::wall_friction::Friction;
-use super::{Plan, Scheme, Solver, explicit, paper_a, paper_b, pore, rest, texture, turning};
+use super::{
+    Plan, Scheme, Solver, StaysAwake, explicit, paper_a, paper_b, pore, rest, texture, turning,
+};
 
-impl<const D: usize> Solver<D> {
-    /// A solver for a plan, on `threads` threads (0: all cores).
-    #[must_use]
-    pub fn new(plan: Plan<D>, threads: usize) -> Self {
-        let Plan {
-            numerics,
-            gravity,
-            geometry,
-            lower,
-            upper,
-            periodic,
-            materials,
-            mut walls,
-            ghost_depth,
-            movers,
-            mut plates,
-            spins,
-            sources,
-            sinks,
-        } = plan;
-        let spacing = numerics.spacing;
-        let h = spacing * numerics.smoothing_ratio;
-        let kernel = WendlandC2::new(h);
-        let barrier = Barrier::new(numerics.spacing, numerics.longest_step());
-        let fixed_groups = walls.groups.len() - plates.len();
-        for mover in &movers {
-            mover.place(&mut walls, 0.0);
-        }
-        let has_bulk_friction = materials.iter().any(|m| m.bulk_friction > 0.0);
-        let has_pores = materials.iter().any(Material::is_saturated);
-        let rubs = walls.groups.iter().any(|g| g.friction > 0.0);
-        let has_fluids = materials.iter().any(Material::is_fluid);
-        let has_meetings = numerics.scheme == Scheme::Implicit && has_fluids && materials.len() > 1;
-        let has_effective_pressure = has_pores || (rubs && has_fluids);
-        let lattice_sum = if has_pores || has_fluids {
-            pore::lattice_sum(&kernel, spacing)
+/// What of a plan tells which stages and forms of sweeps its steps need; fields as in [`Solver`].
+struct Needs {
+    bulk_friction: bool,
+    fluids: bool,
+    meetings: bool,
+    pores: bool,
+    effective_pressure: bool,
+    lattice_sum: f64,
+    slides: Vec<bool>,
+    turns: Vec<bool>,
+    stays_awake: Option<StaysAwake>,
+}
+
+impl Needs {
+    /// Of a plan whose movers are where they start.
+    fn of<const D: usize>(plan: &Plan<D>, kernel: &WendlandC2<D>) -> Self {
+        let (numerics, geometry, materials) = (&plan.numerics, plan.geometry, &plan.materials);
+        let fluids = materials.iter().any(Material::is_fluid);
+        let pores = materials.iter().any(Material::is_saturated);
+        let rubs = plan.walls.groups.iter().any(|g| g.friction > 0.0);
+        let lattice_sum = if pores || fluids {
+            pore::lattice_sum(kernel, numerics.spacing)
         } else {
             0.0
         };
         let rate = explicit::rate::<D>(lattice_sum);
-        let slides = texture::who_slides(&numerics, geometry, &materials, rate);
-        let turns = turning::who_turns(&numerics, geometry, &materials);
-        let stays_awake = rest::stays_awake(&numerics, &gravity, &walls, &materials);
-        for plate in &mut plates {
-            plate.append(&mut walls);
+        Self {
+            bulk_friction: materials.iter().any(|m| m.bulk_friction > 0.0),
+            fluids,
+            meetings: numerics.scheme == Scheme::Implicit && fluids && materials.len() > 1,
+            pores,
+            effective_pressure: pores || (rubs && fluids),
+            lattice_sum,
+            slides: texture::who_slides(numerics, geometry, materials, rate),
+            turns: turning::who_turns(numerics, geometry, materials),
+            stays_awake: rest::stays_awake(numerics, &plan.gravity, &plan.walls, materials),
+        }
+    }
+}
+
+impl<const D: usize> Solver<D> {
+    /// A solver for a plan, on `threads` threads (0: all cores).
+    #[must_use]
+    pub fn new(mut plan: Plan<D>, threads: usize) -> Self {
+        let spacing = plan.numerics.spacing;
+        let h = spacing * plan.numerics.smoothing_ratio;
+        let kernel = WendlandC2::new(h);
+        for mover in &plan.movers {
+            mover.place(&mut plan.walls, 0.0);
+        }
+        let needs = Needs::of(&plan, &kernel);
+        let fixed_groups = plan.walls.groups.len() - plan.plates.len();
+        for plate in &mut plan.plates {
+            plate.append(&mut plan.walls);
         }
         Self {
             lists: Lists::new(kernel.support(), SKIN * h),
-            gravity_norm: norm(&gravity),
-            numerics,
-            gravity,
-            geometry,
-            width: geometry.width(),
-            lower,
-            upper,
-            periodic,
-            materials,
+            gravity_norm: norm(&plan.gravity),
+            barrier: Barrier::new(spacing, plan.numerics.longest_step()),
+            numerics: plan.numerics,
+            gravity: plan.gravity,
+            geometry: plan.geometry,
+            width: plan.geometry.width(),
+            lower: plan.lower,
+            upper: plan.upper,
+            periodic: plan.periodic,
+            materials: plan.materials,
             kernel,
-            barrier,
-            walls,
-            ghost_depth,
+            walls: plan.walls,
+            ghost_depth: plan.ghost_depth,
             fixed_groups,
-            movers,
-            plates,
-            spins,
-            sources,
-            sinks,
+            movers: plan.movers,
+            plates: plan.plates,
+            spins: plan.spins,
+            sources: plan.sources,
+            sinks: plan.sinks,
             workers: Arc::new(Workers::new(threads)),
             arch: Arch::detect(),
-            stays_awake,
-            has_bulk_friction,
-            has_fluids,
-            has_meetings,
-            has_pores,
-            has_effective_pressure,
+            stays_awake: needs.stays_awake,
+            has_bulk_friction: needs.bulk_friction,
+            has_fluids: needs.fluids,
+            has_meetings: needs.meetings,
+            has_pores: needs.pores,
+            has_effective_pressure: needs.effective_pressure,
             records: Vec::new(),
             kinematics: Vec::new(),
             volume: Vec::new(),
@@ -101,17 +112,17 @@ impl<const D: usize> Solver<D> {
             normal_pressure: Vec::new(),
             effective: Vec::new(),
             pore: pore::Work::default(),
-            lattice_sum,
+            lattice_sum: needs.lattice_sum,
             packing: Packing::new(&kernel, spacing),
             flows: Vec::new(),
             damped: Vec::new(),
             lean: Vec::new(),
             wall_share: Vec::new(),
             lone: Vec::new(),
-            slides,
+            slides: needs.slides,
             texture: Vec::new(),
             uneven_pressure: Vec::new(),
-            turns,
+            turns: needs.turns,
             turning: Vec::new(),
             mirrors: Vec::new(),
             faces: Vec::new(),
