@@ -1,23 +1,23 @@
 //! Which piles stand on something at the start: what hangs in the air falls, and nothing in it presses on anything (docs/theory.md, "Start").
 
 use super::Scene;
-use super::piles::{Piles, TOUCH, periods};
-use super::ways::pressing_gravity;
+use super::piles::{Piles, periods};
+use super::ways::{SHARE, pressing_gravity};
 use crate::math::norm;
 use crate::shape::Lattice;
 use crate::solver::Scheme;
 use crate::state::CellGrid;
 
-/// Cosine to gravity of the way to a wall point that bears a place [1]: those of a face beside a place that stands along gravity have less
-/// wherever they lie on it, and a slope of up to 83 deg has some with more.
-const BELOW: f64 = 0.75;
+/// How near a place lies to a point of what bears it, over the spacing [1]: one spacing on a lattice's lowest row, with a point beside it.
+const NEAR: f64 = 1.5;
 
-/// Of each body, whether its pile has a wall or shut gate below it; `walls` are their points.
+/// Of each body, whether its pile has a wall or shut gate below it, level or on a slope of up to 84 deg; `walls` are the places and normals
+/// of their points.
 pub(super) fn footing<const D: usize>(
     scene: &Scene,
     piles: &Piles<'_>,
     lattices: &[Lattice],
-    walls: &[[f64; D]],
+    walls: &[([f64; D], [f64; D])],
 ) -> Vec<bool> {
     let domain = &scene.domain;
     let gravity = pressing_gravity(scene);
@@ -27,13 +27,17 @@ pub(super) fn footing<const D: usize>(
     if scene.numerics.scheme != Scheme::Implicit || falls_round {
         return vec![true; lattices.len()];
     }
-    let near = TOUCH * scene.numerics.spacing;
-    let cells = CellGrid::build(walls, near, &periods::<D>(scene));
+    let near = NEAR * scene.numerics.spacing;
+    let places: Vec<[f64; D]> = walls.iter().map(|(place, _)| *place).collect();
+    let cells = CellGrid::build(&places, near, &periods::<D>(scene));
     let stands = |x: &[f64; D]| {
         let mut found = false;
-        cells.for_each_within(x, near, |_, image, distance| {
-            let down: f64 = (0..D).map(|k| (image[k] - x[k]) * gravity[k]).sum();
-            found |= down > BELOW * distance * size;
+        cells.for_each_within(x, near, |n, image, _| {
+            let normal = &walls[n].1;
+            let away: f64 = (0..D).map(|k| (x[k] - image[k]) * normal[k]).sum();
+            let down: f64 = (0..D).map(|k| normal[k] * gravity[k]).sum();
+            // Plates have a face on either side.
+            found |= -down * away.signum() > SHARE * size;
         });
         found
     };

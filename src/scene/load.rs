@@ -28,20 +28,21 @@ pub(super) struct Loads<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Loads<'a, D> {
-    /// Of a scene in D dimensions whose bodies have these places, before walls and gates with these points; `up` is the axis that gravity
-    /// mostly points along.
+    /// Of a scene in D dimensions whose bodies have these places, before walls and gates whose points have these places and normals; `up` is
+    /// the axis that gravity mostly points along.
     pub(super) fn new(
         scene: &'a Scene,
         up: usize,
         lattices: &[Lattice],
-        walls: &[[f64; D]],
+        walls: &[([f64; D], [f64; D])],
     ) -> Self {
+        let points: Vec<[f64; D]> = walls.iter().map(|(place, _)| *place).collect();
         let piles = Piles::of::<D>(scene, lattices);
         let mut loads = Self {
             scene,
             ways: Ways::of(scene, up),
             standing: footing(scene, &piles, lattices, walls),
-            tops: Tops::new(scene, piles, walls),
+            tops: Tops::new(scene, piles, &points),
             roofed: Vec::new(),
         };
         loads.roofed = pressures_under_roofs(&loads, lattices);
@@ -171,16 +172,21 @@ mod tests {
     /// Load at a place of the last of the bodies of a scene with this domain, before walls with these points, if it stands on something [Pa].
     fn load(domain: &str, bodies: &str, place: [f64; 2], walls: &[[f64; 2]]) -> f64 {
         let place = [place[0], place[1], 0.0];
+        let walls = &with_normal(walls, [0.0, 1.0]);
         asked(domain, bodies, walls, |loads, body| {
             loads.above(body, &place)
         })
+    }
+
+    fn with_normal(points: &[[f64; 2]], normal: [f64; 2]) -> Vec<([f64; 2], [f64; 2])> {
+        points.iter().map(|x| (*x, normal)).collect()
     }
 
     /// Of the loads of a scene and the number of its last body.
     fn asked(
         domain: &str,
         bodies: &str,
-        walls: &[[f64; 2]],
+        walls: &[([f64; 2], [f64; 2])],
         what: impl Fn(&Loads<'_, 2>, usize) -> f64,
     ) -> f64 {
         let text = format!(
@@ -245,37 +251,40 @@ until = 1
 
     #[test]
     fn what_hangs_in_the_air_bears_nothing() {
-        let pressed = |bodies: &str, walls: &[[f64; 2]]| {
+        let pressed = |bodies: &str, walls: &[([f64; 2], [f64; 2])]| {
             let domain = "lower = [-0.1, -0.1]\nupper = [0.2, 0.4]\ngravity = 10";
             let low = [0.0525, 0.0025, 0.0];
             asked(domain, bodies, walls, |loads, body| {
                 loads.at(body, (0, &low), &low)
             })
         };
-        let row = |from: [f64; 2], step: [f64; 2]| -> Vec<[f64; 2]> {
+        let row = |from: [f64; 2], step: [f64; 2], normal: [f64; 2]| {
             let at = |n: i32| [0, 1].map(|k| from[k] + f64::from(n) * step[k]);
-            (-40..40).map(at).collect()
+            with_normal(&(-40..40).map(at).collect::<Vec<_>>(), normal)
         };
-        let floor = |y: f64| row([0.0, y], [0.005, 0.0]);
+        let floor = |y: f64, up: f64| row([0.0, y], [0.005, 0.0], [0.0, up]);
         let block = body("z", 0.0, 0.02);
-        close(pressed(&block, &floor(-0.0025)), 175.0);
+        close(pressed(&block, &floor(-0.0025, 1.0)), 175.0);
         close(pressed(&block, &[]), 0.0);
-        close(pressed(&block, &floor(-0.0125)), 0.0);
+        close(pressed(&block, &floor(-0.0125, 1.0)), 0.0);
+        // A plate bears on either side.
+        close(pressed(&block, &floor(-0.0025, -1.0)), 175.0);
         // Beside walls, wherever their points are, and under a lid.
         for phase in 0..10 {
-            let beside = row([-0.0025, 5e-4 * f64::from(phase)], [0.0, 0.005]);
+            let from = [-0.0025, 5e-4 * f64::from(phase)];
+            let beside = row(from, [0.0, 0.005], [1.0, 0.0]);
             close(pressed(&block, &beside), 0.0);
+            // A steep slope bears what lies on it.
+            let steep = row(from, [0.0008, -0.005], [0.987, 0.158]);
+            close(pressed(&block, &steep), 175.0);
         }
-        close(pressed(&block, &floor(0.0225)), 0.0);
+        close(pressed(&block, &floor(0.0225, -1.0)), 0.0);
         // On what stands, and what falls together.
         let pair = body("y", 0.02, 0.05) + &block;
-        close(pressed(&pair, &floor(-0.0025)), 475.0);
+        close(pressed(&pair, &floor(-0.0025, 1.0)), 475.0);
         close(pressed(&pair, &[]), 0.0);
         let apart = body("y", -0.05, -0.02) + &block;
-        close(pressed(&apart, &floor(-0.0525)), 0.0);
-        // A steep slope bears what lies on it.
-        let steep = row([-0.0025, 0.0025], [0.001, -0.005]);
-        close(pressed(&block, &steep), 175.0);
+        close(pressed(&apart, &floor(-0.0525, 1.0)), 0.0);
     }
 
     #[test]

@@ -60,7 +60,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         Scheme::PaperA(_) => ghost_depth(scene, &walls),
         Scheme::Implicit | Scheme::PaperB(_) => Vec::new(),
     };
-    let state = state(scene, &roofs(scene, &walls))?;
+    let state = state(scene, &supports(scene, &walls))?;
     let spins = spins(scene);
     let sides = std::array::from_fn(|k| {
         (periodic.length[k] > 0.0).then(|| {
@@ -100,20 +100,17 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     Ok((plan, state))
 }
 
-/// Points of walls and gates at which the way up may end at the start.
-fn roofs<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<Vector<D>> {
+/// Places and normals of the points of walls and gates that what is there at the start may stand on or lie under.
+fn supports<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<(Vector<D>, Vector<D>)> {
     if scene.numerics.scheme != Scheme::Implicit {
         return Vec::new();
     }
     let openings: Vec<f64> = scene.gates.iter().map(|g| g.start).collect();
     let plates = plates(scene, walls, &[], &[None; D]);
     let all = with_plates(walls, &plates, &openings);
-    let shown = all
-        .position
-        .iter()
-        .zip(&all.weight)
-        .filter(|(_, w)| **w > 0.5);
-    shown.map(|(x, _)| *x).collect()
+    let points = all.position.iter().zip(&all.normal).zip(&all.weight);
+    let shown = points.filter(|(_, weight)| **weight > 0.5);
+    shown.map(|((x, normal), _)| (*x, *normal)).collect()
 }
 
 /// What a scene's coordinates stand for.

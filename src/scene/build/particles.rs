@@ -39,13 +39,13 @@ fn exact_mass(mass: f64, largest: f64, heaviest: f64) -> f64 {
     (mass / quantum).round() * quantum
 }
 
-/// Particles, and devices as they start; `walls` are the points of walls and gates that may be roofs.
+/// Particles, and devices as they start; `walls` are places and normals of the points of walls and gates.
 ///
 /// # Errors
 /// A sentence: no particles and no inflow.
 pub(super) fn state<const D: usize>(
     scene: &Scene,
-    walls: &[Vector<D>],
+    walls: &[(Vector<D>, Vector<D>)],
 ) -> Result<State<D>, String> {
     let mut random = Random::new(scene.numerics.seed);
     let lattices = lattices::<D>(scene);
@@ -85,7 +85,7 @@ pub(super) fn state<const D: usize>(
 /// Particles of all bodies, in their order; their numbers are their places.
 fn grains<const D: usize>(
     scene: &Scene,
-    walls: &[Vector<D>],
+    walls: &[(Vector<D>, Vector<D>)],
     lattices: &[Lattice],
     random: &mut Random,
 ) -> Grains<D> {

@@ -88,8 +88,9 @@ until = "0.05 s"
     }
     let weight = 1000.0 * 0.3 * 0.04;
     println!("floor {floor:.2} Pa, lid {lid:.2} Pa, weight {weight:.2} Pa");
-    assert!(lid.abs() < 0.25 * weight, "{lid}");
-    assert!((floor - weight).abs() < 0.25 * weight, "{floor}");
+    // The start's jitter sounds: 0.3 to 0.5 Pa of the 12, 486 with the weight of a period.
+    assert!(lid.abs() < 0.08 * weight, "{lid}");
+    assert!((floor - weight).abs() < 0.08 * weight, "{floor}");
 }
 
 /// A layer on a slope of 60 deg presses on its bed with its weight across it.

@@ -103,13 +103,14 @@ fn a_film_of_few_rows_flows_where_the_floor_yields_it_and_not_before() {
         .iter()
         .fold(0.0, |most: f64, [_, v]| most.max(v.abs()));
     println!("0.95 of its plug: {fastest:.2e} m/s");
-    assert!(fastest < 1e-4, "{fastest}");
+    // What is left of settling after 4 s.
+    assert!(fastest < 3e-5, "{fastest}");
     let depth = 1.1 * plug();
     let flows = film(depth, 8, 8.0, 10);
     let speed = mean(flows.iter().map(|[_, v]| *v));
     let aim = mean(flows.iter().map(|[y, _]| exact(depth, *y)));
     println!("1.1 of its plug: {speed:.2e} m/s for {aim:.2e}");
-    assert!((speed / aim - 1.0).abs() < 0.4, "{speed} {aim}");
+    assert!((speed / aim - 1.0).abs() < 0.04, "{speed} {aim}");
 }
 
 /// Without (W7) across the floor the first row sinks to 0.468 spacings and moves at 0.68 of its speed.
