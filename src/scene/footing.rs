@@ -19,12 +19,10 @@ pub(super) fn footing<const D: usize>(
     lattices: &[Lattice],
     walls: &[([f64; D], [f64; D])],
 ) -> Vec<bool> {
-    let domain = &scene.domain;
     let gravity = pressing_gravity(scene);
     let size = norm(&gravity);
-    // The papers' schemes start as printed, and along a period what a plug leans on is not known.
-    let falls_round = (0..3).any(|k| domain.periodic[k] && domain.gravity[k] != 0.0 && size == 0.0);
-    if scene.numerics.scheme != Scheme::Implicit || falls_round {
+    // The papers' schemes start as printed, and along a period it is not known what a plug leans on.
+    if scene.numerics.scheme != Scheme::Implicit || size == 0.0 {
         return vec![true; lattices.len()];
     }
     let near = NEAR * scene.numerics.spacing;
