@@ -7,7 +7,7 @@
 //! slope lies on its bed, not on its lower end. Where none comes out at a free surface (`tops.rs`), as from a bin that stands askew in the
 //! domain, it is against gravity.
 
-use super::footing::footing;
+use super::footing::{Support, footing};
 use super::piles::{Piles, holds};
 use super::roof::pressures_under_roofs;
 use super::tops::{Tops, filled};
@@ -28,15 +28,16 @@ pub(super) struct Loads<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Loads<'a, D> {
-    /// Of a scene in D dimensions whose bodies have these places, before walls and gates whose points have these places and normals; `up` is
-    /// the axis that gravity mostly points along.
+    /// Of a scene in D dimensions whose bodies have these places, before walls and gates with these points; `up` is the axis that gravity
+    /// mostly points along.
     pub(super) fn new(
         scene: &'a Scene,
         up: usize,
         lattices: &[Lattice],
-        walls: &[([f64; D], [f64; D])],
+        walls: &[Support<D>],
     ) -> Self {
-        let points: Vec<[f64; D]> = walls.iter().map(|(place, _)| *place).collect();
+        let whole = walls.iter().filter(|w| w.weight > 0.5);
+        let points: Vec<[f64; D]> = whole.map(|w| w.place).collect();
         let piles = Piles::of::<D>(scene, lattices);
         let mut loads = Self {
             scene,
@@ -178,15 +179,20 @@ mod tests {
         })
     }
 
-    fn with_normal(points: &[[f64; 2]], normal: [f64; 2]) -> Vec<([f64; 2], [f64; 2])> {
-        points.iter().map(|x| (*x, normal)).collect()
+    fn with_normal(points: &[[f64; 2]], normal: [f64; 2]) -> Vec<Support<2>> {
+        let of = |place: &[f64; 2]| Support {
+            place: *place,
+            normal,
+            weight: 1.0,
+        };
+        points.iter().map(of).collect()
     }
 
     /// Of the loads of a scene and the number of its last body.
     fn asked(
         domain: &str,
         bodies: &str,
-        walls: &[([f64; 2], [f64; 2])],
+        walls: &[Support<2>],
         what: impl Fn(&Loads<'_, 2>, usize) -> f64,
     ) -> f64 {
         let text = format!(
@@ -251,7 +257,7 @@ until = 1
 
     #[test]
     fn what_hangs_in_the_air_bears_nothing() {
-        let pressed = |bodies: &str, walls: &[([f64; 2], [f64; 2])]| {
+        let pressed = |bodies: &str, walls: &[Support<2>]| {
             let domain = "lower = [-0.1, -0.1]\nupper = [0.2, 0.4]\ngravity = 10";
             let low = [0.0525, 0.0025, 0.0];
             asked(domain, bodies, walls, |loads, body| {

@@ -16,6 +16,7 @@ use crate::solver::{Periodic, Plan, Scheme, Sink};
 use crate::state::State;
 
 use super::elements::elements;
+use super::footing::Support;
 use super::ghosts::ghost_depth;
 use super::{Dimension, Point, Scene};
 use inflows::source;
@@ -100,8 +101,8 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     Ok((plan, state))
 }
 
-/// Places and normals of the points of walls and gates that what is there at the start may stand on or lie under.
-fn supports<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<(Vector<D>, Vector<D>)> {
+/// Points of walls and gates that what is there at the start may stand on or lie under; a chain of short segments has many of little weight.
+fn supports<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<Support<D>> {
     if scene.numerics.scheme != Scheme::Implicit {
         return Vec::new();
     }
@@ -109,8 +110,12 @@ fn supports<const D: usize>(scene: &Scene, walls: &WallPoints<D>) -> Vec<(Vector
     let plates = plates(scene, walls, &[], &[None; D]);
     let all = with_plates(walls, &plates, &openings);
     let points = all.position.iter().zip(&all.normal).zip(&all.weight);
-    let shown = points.filter(|(_, weight)| **weight > 0.5);
-    shown.map(|((x, normal), _)| (*x, *normal)).collect()
+    let points = points.map(|((place, normal), weight)| Support {
+        place: *place,
+        normal: *normal,
+        weight: *weight,
+    });
+    points.filter(|point| point.weight > 0.0).collect()
 }
 
 /// What a scene's coordinates stand for.

@@ -9,6 +9,7 @@ use crate::solver::{Scheme, three};
 use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
 
 use super::{geometry, narrow, rigid_motion};
+use crate::scene::footing::Support;
 use crate::scene::load::Loads;
 use crate::scene::steady_flow::steady_flow;
 use crate::scene::{Body, Dimension, Point, Scene};
@@ -39,13 +40,13 @@ fn exact_mass(mass: f64, largest: f64, heaviest: f64) -> f64 {
     (mass / quantum).round() * quantum
 }
 
-/// Particles, and devices as they start; `walls` are places and normals of the points of walls and gates.
+/// Particles, and devices as they start; `walls` are the points of walls and gates that they may stand on or lie under.
 ///
 /// # Errors
 /// A sentence: no particles and no inflow.
 pub(super) fn state<const D: usize>(
     scene: &Scene,
-    walls: &[(Vector<D>, Vector<D>)],
+    walls: &[Support<D>],
 ) -> Result<State<D>, String> {
     let mut random = Random::new(scene.numerics.seed);
     let lattices = lattices::<D>(scene);
@@ -85,7 +86,7 @@ pub(super) fn state<const D: usize>(
 /// Particles of all bodies, in their order; their numbers are their places.
 fn grains<const D: usize>(
     scene: &Scene,
-    walls: &[(Vector<D>, Vector<D>)],
+    walls: &[Support<D>],
     lattices: &[Lattice],
     random: &mut Random,
 ) -> Grains<D> {

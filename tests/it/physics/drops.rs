@@ -132,3 +132,58 @@ fn a_block_that_falls_keeps_its_size() {
         }
     }
 }
+
+/// Water in the lower half of a drum of so many segments, over what is 40 mm of it [1].
+fn half_full(segments: usize) -> f64 {
+    let circle = |n: usize, radius: f64, from: f64, turn: f64| {
+        let at = |k: usize| {
+            let angle = from + turn * k as f64 / n as f64;
+            format!("[{:.6}, {:.6}]", radius * angle.cos(), radius * angle.sin())
+        };
+        (0..=n).map(at).collect::<Vec<_>>()
+    };
+    let pi = std::f64::consts::PI;
+    let mut wall = circle(segments, 0.1, 0.0, 2.0 * pi);
+    wall.pop();
+    let half = circle(60, 0.099, pi, pi);
+    let text = format!(
+        r#"
+name = "drum"
+[domain]
+lower = [-0.2, -0.2]
+upper = [0.2, 0.2]
+[numerics]
+spacing = "5 mm"
+[materials.m]
+law = "fluid"
+preset = "water"
+[bodies.half]
+material = "m"
+polygon = [{}]
+[walls.drum]
+polyline = [{}]
+closed = true
+slip = "free_slip"
+[gauges.inside]
+kind = "pressure"
+at = [0, -0.04]
+[run]
+step = "10 ms"
+until = "10 ms"
+"#,
+        half.join(", "),
+        wall.join(", ")
+    );
+    let unit = Unit::new(&scene::parse("drum", &text).unwrap());
+    unit.get("gauge.inside.pressure") / (1000.0 * 9.81 * 0.04)
+}
+
+/// However short the segments of its wall are, and however little each of its points weighs.
+#[test]
+fn what_lies_in_a_drum_stands_on_it() {
+    for segments in [40, 400] {
+        let share = half_full(segments);
+        println!("{segments} segments: {share:.4}");
+        assert!((share - 1.0).abs() < 0.03, "{share}");
+    }
+}
