@@ -249,7 +249,7 @@ fn stands(results: &Results, kernel: &Kernel, rows: u32) -> Metric {
     });
     Metric::new(
         format!(
-            "clay{} 0.9 of its plug deep: fastest particle in the last quarter",
+            "clay{}, 0.9 of its plug deep: fastest particle in the last quarter",
             kernel.asked.of
         ),
         fastest,

@@ -32,11 +32,16 @@ const KEPT: [&str; 3] = ["energy.kinetic", "mass.present", "gauge.depth.depth"];
 /// Friction angle of glass beads [deg].
 const FRICTION: f64 = 20.90;
 const LAYERS: usize = 20;
-/// Rows over the depth of a layer on a slope; twice as many where its pressure is judged.
+/// Rows over the depth of a layer on a slope.
 const ROWS: u32 = 20;
 
 fn scale(height: f64) -> f64 {
     (height / GRAVITY).sqrt()
+}
+
+/// Rows where its pressure is judged.
+fn fine_rows(effort: Effort) -> u32 {
+    effort.pick(2 * ROWS, ROWS)
 }
 
 fn heap(effort: Effort) -> Result<Member, String> {
@@ -138,12 +143,7 @@ fn members(effort: Effort) -> Result<Vec<Member>, String> {
         silo(effort)?,
         hydrostatic(effort)?,
         slope("slope_below", -1.0, ROWS, effort)?,
-        slope(
-            "slope_below_fine",
-            -1.0,
-            effort.pick(2 * ROWS, ROWS),
-            effort,
-        )?,
+        slope("slope_below_fine", -1.0, fine_rows(effort), effort)?,
         slope("slope_above", 1.0, ROWS, effort)?,
     ])
 }
@@ -265,6 +265,7 @@ fn pressures(results: &Results) -> Vec<Metric> {
         pressure_errors(results.finished(name)?.snapshots.last()?, exact)
     };
     let smooth = errors("hydrostatic", &hydrostatic);
+    let rows = fine_rows(results.effort);
     let sloped = errors("slope_below_fine", &lithostatic);
     let coarse = errors("slope_below", &lithostatic);
     let weight = results
@@ -293,19 +294,21 @@ fn pressures(results: &Results) -> Vec<Metric> {
             "exact",
         ),
         Metric::new(
-            "slope at rest, 40 rows: error of pressure rho g cos th (H - z), over the bed's",
+            format!(
+                "slope at rest, {rows} rows: error of pressure rho g cos th (H - z), over the bed's"
+            ),
             sloped.map(|e| e.0),
             Rule::AtMost(0.01),
             exact,
         ),
         Metric::new(
-            "slope at rest, 40 rows: the same of single particles",
+            format!("slope at rest, {rows} rows: the same of single particles"),
             sloped.map(|e| e.1),
             Rule::Report(None),
             SCATTER,
         ),
         Metric::new(
-            "slope at rest, 20 rows: error of pressure",
+            format!("slope at rest, {ROWS} rows: error of pressure"),
             coarse.map(|e| e.0),
             Rule::Report(None),
             "the row beside the floor has most of it",
