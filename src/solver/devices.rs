@@ -1,7 +1,7 @@
 //! Moving walls, gates, inflows and outflows: what moves, adds and takes out between two internal steps.
 
 use crate::math::{CHUNK, Vector, add, norm, scale};
-use crate::state::State;
+use crate::state::{Grains, State};
 
 use super::Solver;
 use super::timestep::MOST_OF_A_PLATE;
@@ -13,6 +13,9 @@ const HELD: f64 = 0.5;
 /// Distance to the leading edge at which a grain stops a plate, over the spacing; of one that is in a wall already.
 const TOUCH: f64 = 0.25;
 const PRESSED: f64 = 0.75;
+
+/// Distance from a slot of an inflow within which nothing may be when a particle enters there, over the spacing.
+const ROOM: f64 = 0.6;
 
 /// A face that lets rows of particles in.
 #[derive(Clone, Debug)]
@@ -157,7 +160,7 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Lets rows in where they are due and have room; returns whether any came.
+    /// Lets in what is due of a row, where it has room; returns whether any came.
     pub(super) fn feed(&self, state: &mut State<D>, rates: &[f64], dt: f64) -> bool {
         let mut came = false;
         for (n, source) in self.sources.iter().enumerate() {
@@ -174,36 +177,59 @@ impl<const D: usize> Solver<D> {
             if inflow.pending < row {
                 continue;
             }
-            let room = 0.6 * self.numerics.spacing;
-            let rows = state.grains.position.iter().zip(&state.grains.drained);
-            let taken = rows.filter(|(_, gone)| !**gone).any(|(x, _)| {
-                source
-                    .slots
-                    .iter()
-                    .any(|slot| norm(&self.periodic.difference(x, slot)) < room)
-            });
-            inflow.blocked |= taken;
-            if taken {
+            let free = self.free_slots(&state.grains, source);
+            let entered = self.enter(state, source, &free);
+            let inflow = &mut state.inflows[n];
+            inflow.pending -= entered;
+            inflow.admitted += entered;
+            came |= entered > 0.0;
+            if free.contains(&false) && inflow.pending >= row {
                 // What cannot enter is refused, not saved up for a burst.
                 inflow.pending = row;
-                continue;
-            }
-            inflow.pending -= row;
-            inflow.admitted += row;
-            came = true;
-            for (slot, mass) in source.slots.iter().zip(&source.masses) {
-                let jitter: Vector<D> = std::array::from_fn(|_| state.random.symmetric());
-                let x = add(
-                    slot,
-                    &scale(self.numerics.jitter * self.numerics.spacing, &jitter),
-                );
-                let id = state.next_id;
-                state.next_id += 1;
-                state
-                    .grains
-                    .push(id, source.phase, x, source.velocity, *mass, source.density);
+                inflow.blocked = true;
             }
         }
         came
+    }
+
+    /// Which slots of a source have nothing within [`ROOM`].
+    fn free_slots(&self, grains: &Grains<D>, source: &Source<D>) -> Vec<bool> {
+        let room = ROOM * self.numerics.spacing;
+        let away = |x: &Vector<D>, y: &Vector<D>| norm(&self.periodic.difference(x, y));
+        let Some(first) = source.slots.first() else {
+            return Vec::new();
+        };
+        let farthest = |most: f64, slot: &Vector<D>| most.max(away(slot, first));
+        let reach = source.slots.iter().fold(0.0, farthest) + room;
+        let mut free = vec![true; source.slots.len()];
+        let present = grains.position.iter().zip(&grains.drained);
+        for (x, _) in present.filter(|(x, gone)| !**gone && away(x, first) < reach) {
+            for (slot, free) in source.slots.iter().zip(&mut free) {
+                *free &= away(x, slot) >= room;
+            }
+        }
+        free
+    }
+
+    /// Adds a particle at each free slot; their mass [kg].
+    fn enter(&self, state: &mut State<D>, source: &Source<D>, free: &[bool]) -> f64 {
+        let mut entered = 0.0;
+        for ((slot, mass), free) in source.slots.iter().zip(&source.masses).zip(free) {
+            if !free {
+                continue;
+            }
+            let jitter: Vector<D> = std::array::from_fn(|_| state.random.symmetric());
+            let x = add(
+                slot,
+                &scale(self.numerics.jitter * self.numerics.spacing, &jitter),
+            );
+            let id = state.next_id;
+            state.next_id += 1;
+            state
+                .grains
+                .push(id, source.phase, x, source.velocity, *mass, source.density);
+            entered += mass;
+        }
+        entered
     }
 }

@@ -15,6 +15,7 @@ mod films;
 mod gates;
 mod gliding;
 mod incline;
+mod inflows;
 mod layers;
 mod leaks;
 mod lips;

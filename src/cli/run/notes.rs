@@ -56,7 +56,7 @@ fn blocked(inflow: &Inflow, spacing: f64, rate: &Figures, mass: &Figures) -> Opt
     (lost > 2.0 * row && lost > LITTLE * wanted).then(|| {
         format!(
             "note: inflow.{} let in {} of {} kg wanted; it was blocked: its face needs a spacing of free room in front of it;\n  \
-             put it above the surface.",
+             put it above the surface, or make it higher than what stands before it.",
             inflow.name,
             short(admitted),
             short(wanted)

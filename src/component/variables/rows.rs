@@ -228,7 +228,7 @@ fn inflow_rows(i: usize, inflow: &Inflow) -> impl Iterator<Item = Row> {
             Source::InflowRate(i),
             inflow.rate,
             inflow.max_rate,
-            format!("mass wanted from inflow {name} per second; what comes, in whole rows, is inflow.{name}.mass"),
+            format!("mass wanted from inflow {name} per second; what comes, row by row, is inflow.{name}.mass"),
         ),
         Row::output(
             format!("inflow.{name}.actual_rate"),
