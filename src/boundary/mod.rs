@@ -6,6 +6,7 @@
 mod bends;
 mod element;
 mod ends;
+mod joints;
 mod mover;
 mod plate;
 mod points;
@@ -15,6 +16,7 @@ mod wall_points;
 pub use bends::to_centres;
 pub use element::{Element, box_elements, plane_elements, polyline_elements};
 pub use ends::{End, free_ends};
+pub use joints::Joint;
 pub use mover::{Mover, RigidMotion};
 pub use plate::{Meets, Plate};
 pub use points::{ROWS, box_points, joined_points, plane_points, polyline_points};

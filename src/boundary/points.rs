@@ -150,7 +150,8 @@ impl Polyline<'_> {
         let open = |end: usize| !self.closed && self.joints[end].is_none();
         let free_start = (s == 0 && open(0)) || cuts[0].is_some();
         let free_end = (s + 1 == self.segments() && open(1)) || cuts[1].is_some();
-        // Half a spacing is left out at a free end; a joint's point belongs to the segment that starts there.
+        // Half a spacing is left out at a free end; a joint's point belongs to the segment that starts
+        // there, and where walls go straight on pushes both (`joints`).
         let ends = 0.5 * (f64::from(u8::from(free_start)) + f64::from(u8::from(free_end)));
         let count = (length / spacing + 1.0 - ends).round();
         let is_cut = cuts.iter().any(Option::is_some);

@@ -41,6 +41,9 @@ pub struct WallPoints<const D: usize> {
     pub ends: Vec<End<D>>,
     /// The end that each point belongs to, counted from 1, 0: none; shorter than the points or empty where there are none.
     pub end: Vec<u16>,
+    /// The wall that bears half of the force on a point on a joint, the end of that wall ([`Joint`](super::Joint)); shorter than the
+    /// points or empty where there are none.
+    pub partner: Vec<Option<u16>>,
 }
 
 impl<const D: usize> WallPoints<D> {
@@ -104,6 +107,10 @@ impl<const D: usize> WallPoints<D> {
         if !self.ends.is_empty() {
             self.end.resize(count, 0);
             pick(&mut self.end, keep);
+        }
+        if !self.partner.is_empty() {
+            self.partner.resize(count, None);
+            pick(&mut self.partner, keep);
         }
     }
 

@@ -15,7 +15,7 @@
 use crate::math::{Vector, dot, norm, scale, sub};
 
 /// Largest |n_A.n_B| of faces that make a corner [1]: beyond it they go on from each other.
-const PARALLEL: f64 = 0.9;
+pub(crate) const PARALLEL: f64 = 0.9;
 
 /// A particle's push on one wall point.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +29,18 @@ pub(super) struct Push<const D: usize> {
     pub reach: Vector<D>,
     /// On the particle, by the point [N s].
     pub impulse: Vector<D>,
+}
+
+impl<const D: usize> Push<D> {
+    /// The part of it that a wall bears.
+    pub(super) fn part(&self, group: u16, share: f64) -> Self {
+        Self {
+            group,
+            reach: scale(share, &self.reach),
+            impulse: scale(share, &self.impulse),
+            ..*self
+        }
+    }
 }
 
 /// A point's push as two faces have it, that of the point, A, and another one, B.

@@ -26,6 +26,7 @@ mod grid;
 mod guess;
 mod handed;
 mod implicit;
+mod joints;
 mod kinematics;
 mod lean;
 mod lists;
@@ -78,6 +79,7 @@ mod wall_geometry;
 mod wall_row;
 mod wall_yield;
 
+pub(crate) use corners::PARALLEL;
 pub use devices::{Sink, Source};
 pub use error::SolverError;
 pub use grid::Periodic;

@@ -178,13 +178,15 @@ impl<const D: usize> Solver<D> {
             let (leant, other) = self.other_push(state, pushing, w, (&x, r));
             let solved = add(&scale(by_stress, &stress), &leant);
             in_solve = add(&in_solve, &solved);
-            pushes.push(Push {
+            let push = Push {
                 group: self.walls.group[w as usize],
                 normal: self.wall_normal(xi, w, state),
                 to: scale(-1.0, &x),
                 reach: reach.of_pressure,
                 impulse: add(&add(&scale(by_stress, &pressure), &other), &solved),
-            });
+            };
+            let bearers = self.walls.bearers(w as usize);
+            pushes.extend(bearers.map(|(group, share)| push.part(group, share)));
         }
         in_solve
     }

@@ -170,8 +170,8 @@ impl<const D: usize> Solver<D> {
     /// too little: friction is then mu_w times the normal force, step by step. After [`Solver::add_reactions`], whose other forces are those
     /// of the solve's velocities.
     pub(super) fn even_friction(&mut self, state: &mut State<D>, dt: f64, all: bool) {
-        let Viscous { held, velocity, .. } = &mut self.viscous;
-        for (row, held) in self.friction.rows.iter().zip(held) {
+        let mut velocity = std::mem::take(&mut self.viscous.velocity);
+        for (row, held) in self.friction.rows.iter().zip(&self.viscous.held) {
             if !row.slides {
                 continue;
             }
@@ -182,14 +182,19 @@ impl<const D: usize> Solver<D> {
             let lacks = scale(most.min(1.0), &lacks);
             for c in &self.friction.contacts[row.range.clone()] {
                 let push = scale(dt * c.area, &c.along(&lacks));
-                let group = c.group as usize;
-                let read = all || self.walls.groups[group].wants_force;
                 for k in 0..D {
                     v[k] -= push[k] / state.grains.mass[row.i];
-                    state.impulse[group][k] += if read { push[k] } else { 0.0 };
+                }
+                for (group, share) in self.friction_bearers(state, c) {
+                    let group = usize::from(group);
+                    let read = all || self.walls.groups[group].wants_force;
+                    for k in 0..D {
+                        state.impulse[group][k] += if read { share * push[k] } else { 0.0 };
+                    }
                 }
             }
         }
+        self.viscous.velocity = velocity;
     }
 
     /// What of a traction x is beyond so many times what the contacts of a row bear [Pa].
@@ -234,15 +239,17 @@ impl<const D: usize> Solver<D> {
         for (row, held) in self.friction.rows.iter().zip(&self.viscous.held) {
             let v = &self.viscous.velocity[row.i];
             for c in &self.friction.contacts[row.range.clone()] {
-                let group = c.group as usize;
                 let push: Vector<D> = std::array::from_fn(|k| {
                     c.area * held[k] + row.penalty * (c.area * v[k] - c.drive[k])
                 });
                 let push = c.along(&push);
                 for k in 0..D {
                     total[k] += dt * push[k];
-                    if read[group] {
-                        state.impulse[group][k] += dt * push[k];
+                }
+                let bearers = self.friction_bearers(state, c);
+                for (group, share) in bearers.filter(|(group, _)| read[usize::from(*group)]) {
+                    for k in 0..D {
+                        state.impulse[usize::from(group)][k] += dt * share * push[k];
                     }
                 }
             }

@@ -1,11 +1,11 @@
 //! Walls as points, the groups these belong to, and how walls move.
 
 use crate::boundary::{
-    End, GroupSpec, Mover, ROWS, RigidMotion, WallPoints, box_points, free_ends, joined_points,
-    plane_points, tip_points, to_centres,
+    End, GroupSpec, Joint, Mover, ROWS, RigidMotion, WallPoints, box_points, free_ends,
+    joined_points, plane_points, tip_points, to_centres,
 };
-use crate::math::{norm, scale};
-use crate::solver::Periodic;
+use crate::math::{dot, norm, scale};
+use crate::solver::{PARALLEL, Periodic};
 
 use super::narrow;
 use crate::scene::{
@@ -79,10 +79,19 @@ fn add_polyline<const D: usize>(
     for (x, normal, weight) in rows {
         points.push(wide(x), narrow(velocity), wide(normal), weight, group);
     }
+    let (depth, rim) = (ROWS as f64 * dp, 0.25 * dp);
+    if let Some((joint, other)) = straight_joint(scene, wall, depth) {
+        let joint = Joint {
+            place: wide(joint.place),
+            ways: joint.ways.map(wide),
+            normal: wide(joint.normal),
+            depth,
+        };
+        points.add_joint(&joint, group, other);
+    }
     if closed || *rigid {
         return;
     }
-    let (depth, rim) = (ROWS as f64 * dp, 0.25 * dp);
     for (end, length) in free_ends(corners, joints, depth, rim) {
         let end = End {
             point: wide(end.point),
@@ -159,9 +168,35 @@ pub(in crate::scene) fn group(
     }
 }
 
+/// Where a wall goes straight on from another one that moves as it does, and which: of a belt and what stands beside it each
+/// keeps all that its points are pushed with, as they do not slide alike.
+fn straight_joint(scene: &Scene, wall: usize, depth: f64) -> Option<(Joint<2>, u16)> {
+    let WallGeometry::Polyline { points, .. } = &scene.walls[wall].geometry else {
+        return None;
+    };
+    let (other, arrives) = meets(scene, wall)[0]?;
+    let motion = |n: usize| (scene.walls[n].velocity, scene.walls[n].rotation);
+    let leaves = way(&points[0], &points[1]);
+    if motion(wall) != motion(other) || dot(&arrives, &leaves) <= PARALLEL {
+        return None;
+    }
+    let joint = Joint {
+        place: points[0],
+        ways: [arrives, leaves],
+        normal: [-leaves[1], leaves[0]],
+        depth,
+    };
+    Some((joint, other as u16))
+}
+
 /// Directions in which other walls arrive at the first point of an open polyline and leave its last: walls that meet make a
 /// whole corner, if they stay where they are to each other.
 fn joints(scene: &Scene, wall: usize) -> [Option<[f64; 2]>; 2] {
+    meets(scene, wall).map(|met| met.map(|(_, way)| way))
+}
+
+/// As [`joints`], each with the wall that is met.
+fn meets(scene: &Scene, wall: usize) -> [Option<(usize, [f64; 2])>; 2] {
     let open = |n: usize| match &scene.walls[n] {
         other @ Wall {
             geometry:
@@ -177,20 +212,22 @@ fn joints(scene: &Scene, wall: usize) -> [Option<[f64; 2]>; 2] {
         return [None; 2];
     };
     let others = (0..scene.walls.len()).filter(|n| *n != wall);
-    let others: Vec<&Vec<[f64; 2]>> = others.filter_map(open).collect();
+    let others: Vec<(usize, &Vec<[f64; 2]>)> = others.filter_map(|n| Some((n, open(n)?))).collect();
     let eps = 1e-6 * scene.numerics.spacing;
     let same = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < eps;
-    let way = |a: &[f64; 2], b: &[f64; 2]| {
-        let d = [b[0] - a[0], b[1] - a[1]];
-        scale(1.0 / norm(&d), &d)
-    };
     let (first, last) = (own[0], own[own.len() - 1]);
-    let before = others.iter().find(|o| same(&o[o.len() - 1], &first));
-    let after = others.iter().find(|o| same(&o[0], &last));
+    let before = others.iter().find(|(_, o)| same(&o[o.len() - 1], &first));
+    let after = others.iter().find(|(_, o)| same(&o[0], &last));
     [
-        before.map(|o| way(&o[o.len() - 2], &o[o.len() - 1])),
-        after.map(|o| way(&o[0], &o[1])),
+        before.map(|(n, o)| (*n, way(&o[o.len() - 2], &o[o.len() - 1]))),
+        after.map(|(n, o)| (*n, way(&o[0], &o[1]))),
     ]
+}
+
+/// Unit direction from a to b.
+fn way(a: &[f64; 2], b: &[f64; 2]) -> [f64; 2] {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    scale(1.0 / norm(&d), &d)
 }
 
 /// Walls that move as a whole.

@@ -68,8 +68,8 @@ struct Ghost<const D: usize> {
     mass: f64,
     /// v_ij over v_i.
     beta: f64,
-    /// Wall it belongs to.
-    group: usize,
+    /// Its number among the wall points.
+    wall: usize,
 }
 
 impl<const D: usize> Solver<D> {
@@ -194,18 +194,24 @@ impl<const D: usize> Solver<D> {
                 let i = b * CHUNK + row;
                 let mut felt = Vec::new();
                 for ghost in self.ghosts(choices, state, i, block.wall_row(row)) {
-                    if self.walls.groups[ghost.group].wants_force {
+                    let read = |group: u16| self.walls.groups[usize::from(group)].wants_force;
+                    let mut bearers = self
+                        .walls
+                        .bearers(ghost.wall)
+                        .filter(|b| read(b.0))
+                        .peekable();
+                    if bearers.peek().is_some() {
                         let v = scale(ghost.beta, &work.half_velocity[i]);
                         let own = &work.response[i];
                         let mut a = [0.0; D];
                         let stress = self.pair_stress(own, own, &v, &ghost.at);
                         push(&mut a, -ghost.mass * stress, &ghost.at);
-                        felt.push((ghost.group, a));
+                        felt.extend(bearers.map(|(group, share)| (group, scale(share, &a))));
                     }
                 }
                 for (group, a) in felt {
                     for k in 0..D {
-                        state.impulse[group][k] -= dt * state.grains.mass[i] * a[k];
+                        state.impulse[usize::from(group)][k] -= dt * state.grains.mass[i] * a[k];
                     }
                 }
             }
@@ -280,7 +286,7 @@ impl<const D: usize> Solver<D> {
                 at,
                 mass: self.walls.weight[w] * mass,
                 beta,
-                group: self.walls.group[w] as usize,
+                wall: w,
             })
         })
     }
