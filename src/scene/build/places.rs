@@ -41,6 +41,23 @@ impl<const D: usize> Places<D> {
         best.1
     }
 
+    /// Those that are wanted within `reach` spacings.
+    pub(super) fn within(
+        &self,
+        x: &Vector<D>,
+        reach: f64,
+        wanted: impl Fn(usize) -> bool,
+    ) -> Vec<usize> {
+        let mut found = Vec::new();
+        self.cells
+            .for_each_within(x, reach * self.spacing, |n, _, _| {
+                if wanted(n) {
+                    found.push(n);
+                }
+            });
+        found
+    }
+
     /// Whether there is any within `reach` spacings.
     pub(super) fn has(&self, x: &Vector<D>, reach: f64) -> bool {
         self.nearest(x, reach, |_| true).is_some()

@@ -1,12 +1,19 @@
 //! Which way a point of a box looks: a face that another wall covers is nobody's, and what is nearest to it belongs to the next one. A
-//! block that stands on a floor would else bear downwards what the water beside it pushes on its foot.
+//! block that stands on a floor would else bear downwards what the water beside it pushes on its foot. So is an end that the box's own
+//! image across a period covers. Where a box reaches into another wall, the face that it shows beside that wall goes on inside.
 
 use crate::boundary::WallPoints;
-use crate::math::{Vector, add, scale};
+use crate::math::{Vector, add, dot, norm, scale, sub};
 
 use super::{Face, Solid};
 use crate::scene::Scene;
 use crate::scene::build::places::{Places, STANDS};
+
+/// How squarely a wall looks against a face that it hides, at least: cosine of the angle between the two [1].
+const SQUARELY: f64 = 0.71;
+
+/// Distance within which a wall looks at a point that lies in it, over the spacing [1]: round the edge where it meets another one.
+const BESIDE: f64 = 1.5;
 
 /// Gives each point of the boxes the normal of the nearest face that nothing covers there; of the nearest one where all are covered.
 pub(super) fn face_openly<const D: usize>(
@@ -15,34 +22,80 @@ pub(super) fn face_openly<const D: usize>(
     solids: &[Solid<D>],
     sides: &[Option<(f64, f64)>; D],
 ) {
-    let spacing = scene.numerics.spacing;
-    let fixed = |group: u16| !scene.walls[usize::from(group)].rigid;
-    let places = Places::new(&points.position, spacing, sides);
-    for solid in solids {
-        let group = &points.group;
-        let covered = |x: &Vector<D>, face: Face| {
-            let mut foot = *x;
-            foot[face.axis] = solid.out_of(face, 0.0);
-            let beyond = add(&foot, &scale(0.5 * spacing, &face.normal()));
-            // What moves may leave a box that stays, and seldom what it slides on.
-            let covers = |other: u16| fixed(other) || !fixed(solid.group);
-            let other = |n: usize| group[n] != solid.group && covers(group[n]);
-            places.nearest(&beyond, STANDS, other).is_some()
+    let places = Places::new(&points.position, scene.numerics.spacing, sides);
+    let rigid = |solid: &&Solid<D>| scene.walls[usize::from(solid.group)].rigid;
+    // Boxes that move last: they may reach into one that stays, and ask which way it looks.
+    let (moving, fixed): (Vec<_>, Vec<_>) = solids.iter().partition(rigid);
+    for solid in fixed.into_iter().chain(moving) {
+        let amid = Amid {
+            scene,
+            points,
+            places: &places,
+            solid,
         };
-        let mut found = Vec::new();
-        for n in (0..points.len()).filter(|&n| group[n] == solid.group) {
-            let x = &points.position[n];
-            let inside = (0..D).all(|k| x[k] > solid.lower[k] && x[k] < solid.upper[k]);
-            let mut faces: Vec<Face> = Face::all::<D>().collect();
-            let depth = |f: &Face| f.side * (solid.out_of(*f, 0.0) - x[f.axis]);
-            faces.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-            let open = faces.iter().find(|face| !covered(x, **face));
-            if let Some(face) = open.filter(|_| inside) {
-                found.push((n, face.normal()));
-            }
-        }
+        let own = (0..points.len()).filter(|&n| points.group[n] == solid.group);
+        let open = own.filter_map(|n| Some((n, amid.open_normal(&points.position[n])?)));
+        let found: Vec<_> = open.collect();
         for (n, normal) in found {
             points.normal[n] = normal;
         }
+    }
+}
+
+/// A box amid the points of all walls.
+struct Amid<'a, const D: usize> {
+    scene: &'a Scene,
+    points: &'a WallPoints<D>,
+    places: &'a Places<D>,
+    solid: &'a Solid<D>,
+}
+
+impl<const D: usize> Amid<'_, D> {
+    /// Normal of the nearest open face of a place in the box; `None` outside, or where all are covered.
+    fn open_normal(&self, x: &Vector<D>) -> Option<Vector<D>> {
+        let solid = self.solid;
+        let inside = (0..D).all(|k| x[k] > solid.lower[k] && x[k] < solid.upper[k]);
+        let mut faces: Vec<Face> = Face::all::<D>().collect();
+        let depth = |f: &Face| f.side * (solid.out_of(*f, 0.0) - x[f.axis]);
+        faces.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
+        let around = self.around(x);
+        let open = faces.iter().find(|face| !self.is_covered(x, face, &around));
+        open.filter(|_| inside).map(|face| face.normal())
+    }
+
+    /// Points of other walls around a place that lies in one, not only beside it.
+    fn around(&self, x: &Vector<D>) -> Vec<usize> {
+        let spacing = self.scene.numerics.spacing;
+        let step = self.solid.step.iter().fold(spacing, |a, b| a.min(*b));
+        // What only touches is half a step and half a spacing away.
+        let in_it = STANDS * 0.5 * (1.0 + step / spacing);
+        if self.places.nearest(x, in_it, |n| self.hides(n)).is_none() {
+            return Vec::new();
+        }
+        self.places.within(x, BESIDE, |n| self.hides(n))
+    }
+
+    /// Whether a face is covered before a place in the box that these points lie around.
+    fn is_covered(&self, x: &Vector<D>, face: &Face, around: &[usize]) -> bool {
+        let spacing = self.scene.numerics.spacing;
+        let mut foot = *x;
+        foot[face.axis] = self.solid.out_of(*face, 0.0);
+        let beyond = add(&foot, &scale(0.5 * spacing, &face.normal()));
+        let against = |n: usize| dot(&self.points.normal[n], &face.normal()) < -SQUARELY;
+        // The wall that the box reaches into goes on before faces that it looks past, too.
+        let other = |n: usize| self.hides(n) && (around.is_empty() || against(n));
+        let image = |n: usize| {
+            let direct = norm(&sub(&beyond, &self.points.position[n]));
+            self.points.group[n] == self.solid.group && direct > STANDS * spacing
+        };
+        let covers = |n: usize| other(n) || image(n);
+        around.iter().any(|&n| against(n)) || self.places.nearest(&beyond, STANDS, covers).is_some()
+    }
+
+    /// Whether a point is of another wall that may hide this box: what moves may leave a box that stays, and seldom what it slides on.
+    fn hides(&self, n: usize) -> bool {
+        let rigid = |group: u16| self.scene.walls[usize::from(group)].rigid;
+        let group = self.points.group[n];
+        group != self.solid.group && (rigid(self.solid.group) || !rigid(group))
     }
 }
