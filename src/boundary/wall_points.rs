@@ -82,10 +82,10 @@ impl<const D: usize> WallPoints<D> {
         self.position.is_empty()
     }
 
-    /// Keeps the points whose position satisfies `wanted`.
-    pub fn retain(&mut self, wanted: impl Fn(&Vector<D>) -> bool) {
+    /// Keeps the points whose position and group satisfy `wanted`.
+    pub fn retain(&mut self, wanted: impl Fn(&Vector<D>, u16) -> bool) {
         let keep: Vec<usize> = (0..self.len())
-            .filter(|&i| wanted(&self.position[i]))
+            .filter(|&i| wanted(&self.position[i], self.group[i]))
             .collect();
         self.pick(&keep);
     }

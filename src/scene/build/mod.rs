@@ -8,6 +8,7 @@ mod overlap;
 mod particles;
 mod places;
 mod plates;
+mod slides;
 mod walls;
 
 use crate::boundary::{Plate, WallPoints};

@@ -8,6 +8,7 @@ use crate::math::{dot, norm, scale};
 use crate::solver::{PARALLEL, Periodic};
 
 use super::narrow;
+use super::slides::drop_behind_slides;
 use crate::scene::{
     Dimension, ForceTarget, GaugeKind, Point, Rotation, Scene, Slip, Wall, WallGeometry,
 };
@@ -39,8 +40,9 @@ pub(super) fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> Wa
         }
     }
     if scene.dimension == Dimension::Axisymmetric {
-        points.retain(|x| x[0] > 0.0);
+        points.retain(|x, _| x[0] > 0.0);
     }
+    drop_behind_slides(scene, &mut points);
     let wall = |group: u16| &scene.walls[group as usize];
     points.drop_doubles(dp, |a, b| wall(a).moves_with(wall(b)));
     // Afterwards: in a tip points lie closer than that, and two at each place.

@@ -103,6 +103,35 @@ until = 0.1
     ["x", "y", "z"].map(|k| unit.get(&format!("gauge.f.force_{k}")))
 }
 
+const PLANES: [&str; 2] = [
+    "plane = { point = [0, 0, 0], normal = [0, 1, 0] }",
+    "plane = { point = [0, 0.05, 0], normal = [0, -1, 0] }",
+];
+
+/// The same to rounding of where the points lie, be it a box or a plane. One row behind each side pushed a box down by 0.25 of its thrust.
+#[test]
+fn what_a_wall_has_behind_planes_that_it_slides_along_counts_for_nothing() {
+    let ends = retaining(
+        "box = { lower = [-0.06, 0, 0], upper = [0, 0.05, 0.3] }",
+        PLANES,
+    );
+    let walls = [
+        "box = { lower = [-0.06, -0.01, 0], upper = [0, 0.06, 0.3] }",
+        "box = { lower = [-0.06, -0.05, -0.02], upper = [0, 0.1, 0.3] }",
+        "plane = { point = [0, 0, 0], normal = [1, 0, 0] }",
+    ];
+    for wall in walls {
+        let force = retaining(wall, PLANES);
+        println!("{force:?} N, {ends:?} of the one that ends there");
+        for (a, b) in force.iter().zip(&ends) {
+            assert!(
+                (a - b).abs() < 1e-3 * ends[0].abs(),
+                "{wall}: {force:?}, {ends:?} N"
+            );
+        }
+    }
+}
+
 /// Sides that are boxes keep what reaches into them, and it goes on as the face beside: nothing is borne along the wall (0.02 of the
 /// thrust is; 0.25 was).
 #[test]
