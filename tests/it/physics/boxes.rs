@@ -147,3 +147,50 @@ fn a_box_that_reaches_into_others_looks_there_as_beside_them() {
     println!("{force:?} N");
     assert!(force[2].abs() < 0.05 * force[0].abs(), "{force:?} N");
 }
+
+/// A floor that is a box goes on under the walls that stand on it, by any length: each wall's thrust is its own, and smooth walls bear no weight.
+/// The floor's points in the corner looked towards its own end: 0.055 of the thrust was the floor's, at four spacings and more.
+#[test]
+fn a_floor_that_goes_on_under_its_walls_takes_nothing_of_their_thrust() {
+    for more in [0.0, 0.01, 0.02, 0.04, 0.1] {
+        let text = format!(
+            r#"
+name = "floor"
+[domain]
+lower = [-0.2, -0.2]
+upper = [0.4, 0.2]
+[numerics]
+spacing = 0.01
+[materials.water]
+law = "fluid"
+preset = "water"
+[bodies.water]
+material = "water"
+box = {{ lower = [0, 0], upper = [0.2, 0.1] }}
+[walls.floor]
+box = {{ lower = [{}, -0.1], upper = [{}, 0] }}
+slip = "free_slip"
+[walls.left]
+plane = {{ point = [0, 0], normal = [1, 0] }}
+slip = "free_slip"
+[walls.right]
+plane = {{ point = [0.2, 0], normal = [-1, 0] }}
+slip = "free_slip"
+[gauges.f]
+kind = "force"
+on = "wall.left"
+[run]
+step = 0.02
+until = 0.4
+"#,
+            -more,
+            0.2 + more
+        );
+        let scene = scene::parse("floor.toml", &text).unwrap_or_else(|e| panic!("{e}"));
+        let mut unit = Unit::new(&scene);
+        unit.run_to(0.4);
+        let thrust = -unit.get("gauge.f.force_x") / (0.5 * 1000.0 * 9.81 * 0.1_f64.powi(2));
+        println!("{more} m under the walls: {thrust} of the thrust");
+        assert!((thrust - 1.0).abs() < 0.015, "{more}: {thrust}");
+    }
+}
