@@ -1,5 +1,6 @@
 //! Moving walls, gates, inflows and outflows: what moves, adds and takes out between two internal steps.
 
+use crate::boundary::Piston;
 use crate::math::{CHUNK, Vector, add, norm, scale};
 use crate::state::{Grains, State};
 
@@ -30,6 +31,10 @@ pub struct Source<const D: usize> {
     pub phase: u8,
     /// Density they come with [kg/m^3].
     pub density: f64,
+    /// Longer edge of the face [m].
+    pub length: f64,
+    /// What of the wall behind the face comes forward, if what enters pushes.
+    pub piston: Option<Piston<D>>,
 }
 
 /// A box that takes particles out.
@@ -161,9 +166,14 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Lets in what is due of a row, where it has room; returns whether any came.
-    pub(super) fn feed(&self, state: &mut State<D>, rates: &[f64], dt: f64) -> bool {
+    pub(super) fn feed(&mut self, state: &mut State<D>, rates: &[f64], dt: f64) -> bool {
         let mut came = false;
-        for (n, source) in self.sources.iter().enumerate() {
+        for n in 0..self.sources.len() {
+            if self.sources[n].piston.is_some() {
+                came |= self.let_row_in(state, n);
+                continue;
+            }
+            let source = &self.sources[n];
             let row = source.row_mass();
             let inflow = &mut state.inflows[n];
             if rates[n] <= 0.0 {
@@ -177,7 +187,7 @@ impl<const D: usize> Solver<D> {
             if inflow.pending < row {
                 continue;
             }
-            let free = self.free_slots(&state.grains, source);
+            let free = self.free_slots(&state.grains, source, ROOM);
             let entered = self.enter(state, source, &free);
             let inflow = &mut state.inflows[n];
             inflow.pending -= entered;
@@ -192,9 +202,14 @@ impl<const D: usize> Solver<D> {
         came
     }
 
-    /// Which slots of a source have nothing within [`ROOM`].
-    fn free_slots(&self, grains: &Grains<D>, source: &Source<D>) -> Vec<bool> {
-        let room = ROOM * self.numerics.spacing;
+    /// Which slots of a source have nothing within a share of the spacing.
+    pub(super) fn free_slots(
+        &self,
+        grains: &Grains<D>,
+        source: &Source<D>,
+        room: f64,
+    ) -> Vec<bool> {
+        let room = room * self.numerics.spacing;
         let away = |x: &Vector<D>, y: &Vector<D>| norm(&self.periodic.difference(x, y));
         let Some(first) = source.slots.first() else {
             return Vec::new();
@@ -212,7 +227,7 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Adds a particle at each free slot; their mass [kg].
-    fn enter(&self, state: &mut State<D>, source: &Source<D>, free: &[bool]) -> f64 {
+    pub(super) fn enter(&self, state: &mut State<D>, source: &Source<D>, free: &[bool]) -> f64 {
         let mut entered = 0.0;
         for ((slot, mass), free) in source.slots.iter().zip(&source.masses).zip(free) {
             if !free {

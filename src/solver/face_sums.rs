@@ -24,6 +24,8 @@ pub(super) struct FaceSums<const D: usize> {
     pub(super) by_length: Vector<D>,
     /// sum v_w (x) g.
     pub(super) carried: Tensor<D>,
+    /// sum v_w.g of points that come forward with a stream (W13).
+    pub(super) pushed: f64,
     /// sum c (P g)(P g)^T, c = 2 (D + 2)/(|g| r).
     pub(super) pair: Tensor<D>,
     /// sum c (P g)(P g)^T v_w.
@@ -53,6 +55,7 @@ impl<const D: usize> FaceSums<D> {
             s: [0.0; D],
             by_length: [0.0; D],
             carried: [[0.0; D]; D],
+            pushed: 0.0,
             pair: [[0.0; D]; D],
             dragged: [0.0; D],
             lean: 0.0,

@@ -65,6 +65,7 @@ mod seams;
 mod shift;
 mod start;
 mod step;
+mod streams;
 #[cfg(test)]
 mod sweep_tests;
 mod texture;
@@ -138,6 +139,8 @@ pub struct Solver<const D: usize> {
     plates: Vec<Plate<D>>,
     spins: Vec<(Range<u64>, RigidMotion<D>)>,
     sources: Vec<Source<D>>,
+    /// Whether one of them pushes (W13).
+    has_streams: bool,
     sinks: Vec<Sink<D>>,
     workers: Arc<Workers>,
     /// Instructions of the hot loops.

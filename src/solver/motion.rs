@@ -113,6 +113,7 @@ impl<const D: usize> Solver<D> {
             .movers
             .iter()
             .fold(travel, |t, m| t.max(m.travel(moved)));
+        let travel = travel.max(self.travel_of_streams(state));
         // What comes to rest must not lean on what an outflow took.
         let lean = state.rest.quiet_steps > 0 && state.grains.drained.contains(&true);
         if renew
@@ -137,6 +138,9 @@ impl<const D: usize> Solver<D> {
         state.pose.listed = state.pose.now;
         for gate in &mut state.gates {
             gate.listed_opening = gate.opening;
+        }
+        for inflow in &mut state.inflows {
+            inflow.listed_advance = inflow.advance;
         }
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.opening, gate.rate);

@@ -92,6 +92,7 @@ impl<const D: usize> Solver<D> {
             movers: plan.movers,
             plates: plan.plates,
             spins: plan.spins,
+            has_streams: plan.sources.iter().any(|s| s.piston.is_some()),
             sources: plan.sources,
             sinks: plan.sinks,
             workers: Arc::new(Workers::new(threads)),
@@ -191,11 +192,13 @@ impl<const D: usize> Solver<D> {
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.listed_opening, 0.0);
         }
+        self.place_streams(state, true);
         self.build_lists(state);
         self.place_movers(state.pose.now);
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.opening, gate.rate);
         }
+        self.place_streams(state, false);
         self.derive(state);
     }
 

@@ -52,6 +52,7 @@ impl<const D: usize> Solver<D> {
         on_move(&self.before, &state.grains);
         self.move_walls(state, dt);
         self.move_gates(state, inputs.openings, dt);
+        self.push_streams(state, inputs.rates, dt);
         self.drain(state);
         self.keep_inside(state)?;
         self.sweep_kinematics_in_valid_lists(state, false);

@@ -108,6 +108,8 @@ impl<'s, const D: usize> WallFaces<'s, D> {
         let moves = solver.wall_moves(face.group);
         if moves {
             w.drive += trace(&face.carried);
+        } else {
+            w.drive += face.pushed;
         }
         let n = &face.normal;
         if face.lean > 0.0 {

@@ -1,6 +1,6 @@
 //! Wall points as a particle sees them: where they lie, how they move, which way their face looks.
 
-use crate::math::{Vector, norm, sub};
+use crate::math::{Vector, dot, norm, scale, sub};
 use crate::state::State;
 
 use super::Solver;
@@ -23,11 +23,14 @@ impl<const D: usize> Solver<D> {
     }
 
     /// How a wall point moves [m/s]: a belt's surface slides, its points stay, and what comes near them is compressed
-    /// by its own way only.
+    /// by its own way only. Behind a stream they come along with it, across their face.
     #[inline(always)]
     pub(super) fn point_velocity(&self, wall: u32) -> Vector<D> {
         if self.wall_moves(self.walls.group[wall as usize]) {
             self.walls.velocity[wall as usize]
+        } else if self.has_streams {
+            let normal = &self.walls.normal[wall as usize];
+            scale(dot(normal, &self.walls.velocity[wall as usize]), normal)
         } else {
             [0.0; D]
         }

@@ -169,6 +169,9 @@ impl<const D: usize> Solver<D> {
         add_outer(&mut face.around, -1.0, x, g);
         let c = 2.0 * (D as f64 + 2.0) / (-point.vf * point.r2);
         face.add(g, c, vw);
+        if self.has_streams {
+            face.pushed += dot(&self.point_velocity(point.wall), g);
+        }
         if point.spec.friction > 0.0 {
             face.add_length(self.ring_part(own.i, point.wall), g);
         }

@@ -108,4 +108,10 @@ pub struct InflowState {
     pub admitted: f64,
     /// Whether material stood in the way of a row since [`State::forget_blocked`].
     pub blocked: bool,
+    /// Of a stream that pushes: how far the wall behind it has come forward, 0 to 1 [spacings].
+    pub advance: f64,
+    /// Its rate over the last step [1/s].
+    pub rate: f64,
+    /// Advance when the neighbour lists were built.
+    pub listed_advance: f64,
 }

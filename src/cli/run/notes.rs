@@ -55,8 +55,9 @@ fn blocked(inflow: &Inflow, spacing: f64, rate: &Figures, mass: &Figures) -> Opt
     let lost = wanted - admitted;
     (lost > 2.0 * row && lost > LITTLE * wanted).then(|| {
         format!(
-            "note: inflow.{} let in {} of {} kg wanted; it was blocked: its face needs a spacing of free room in front of it;\n  \
-             put it above the surface, or make it higher than what stands before it.",
+            "note: inflow.{} let in {} of {} kg wanted; it was blocked by what stands before its face:\n  \
+             a fluid let in through a wall needs room to push it into, anything else a spacing of free room; put the face above\n  \
+             the surface, or make it higher than what stands before it.",
             inflow.name,
             short(admitted),
             short(wanted)

@@ -1,11 +1,17 @@
-//! Sources: where and how heavy the particles are that an inflow lets in.
+//! Sources: where and how heavy the particles are that an inflow lets in, and the part of a wall that it opens.
 
-use crate::math::{Vector, add, norm, scale};
-use crate::solver::Source;
+use crate::boundary::{Piston, ROWS, WallPoints};
+use crate::math::{Vector, add, cross, dot, norm, scale, sub};
+use crate::solver::{Scheme, Source};
 
 use super::narrow;
 use super::particles::particle_mass;
-use crate::scene::{Inflow, Scene};
+use crate::scene::{Dimension, Inflow, Point, Scene};
+
+/// Least cosine between a wall's face and that of an inflow which lies on it [1].
+const SAME: f64 = 0.99;
+/// Most that a place of an inflow's row is from the first points of a wall it lies on, over the spacing [1]: 1.22 on a lattice in space.
+const BEFORE: f64 = 1.4;
 
 /// Slots half a spacing inside the face, so that a row clears it as it appears.
 pub(super) fn source<const D: usize>(scene: &Scene, inflow: &Inflow) -> Source<D> {
@@ -48,5 +54,54 @@ pub(super) fn source<const D: usize>(scene: &Scene, inflow: &Inflow) -> Source<D
         velocity,
         phase: inflow.material as u8,
         density,
+        length: norm(&edge).max(norm(&span)),
+        piston: None,
     }
+}
+
+/// What of fixed walls comes forward with a stream: of fluids, where all of the face lies on such walls.
+pub(super) fn piston<const D: usize>(
+    scene: &Scene,
+    inflow: &Inflow,
+    source: &Source<D>,
+    walls: &WallPoints<D>,
+) -> Option<Piston<D>> {
+    let is_fluid = scene.materials[inflow.material].material.is_fluid();
+    if scene.numerics.scheme != Scheme::Implicit || !is_fluid {
+        return None;
+    }
+    let dp = scene.numerics.spacing;
+    let edge: Point = sub(&inflow.to, &inflow.from);
+    let rings_or_plane = scene.dimension != Dimension::Three;
+    let span = if rings_or_plane {
+        [0.0, 0.0, 1.0]
+    } else {
+        inflow.span
+    };
+    let area = cross(&edge, &span);
+    let size2 = dot(&area, &area);
+    let along = scale(1.0 / size2, &cross(&span, &area));
+    let wide = scale(1.0 / size2, &cross(&area, &edge));
+    let across = if rings_or_plane {
+        vec![narrow(&along)]
+    } else {
+        vec![narrow(&along), narrow(&wide)]
+    };
+    let side = dot(&area, &inflow.velocity).signum();
+    let normal: Vector<D> = narrow(&scale(side / size2.sqrt(), &area));
+    let mut piston = Piston::new(narrow(&inflow.from), across, normal, dp);
+    let deep = (ROWS as f64 + 0.1) * dp;
+    piston.take(walls, |piston, i| {
+        let behind = |x: &Vector<D>| piston.ahead(x).is_some_and(|d| d < 0.0 && d > -deep);
+        let wall = scene.walls.get(usize::from(walls.group[i]));
+        wall.is_some_and(|w| !w.rigid && w.velocity == [0.0; 3])
+            && dot(&walls.normal[i], piston.normal()) > SAME
+            && behind(&walls.position[i])
+    });
+    let near = |slot: &Vector<D>| {
+        let points = piston.position().iter();
+        points.map(|x| norm(&sub(x, slot))).any(|r| r < BEFORE * dp)
+    };
+    let whole = source.slots.iter().all(near);
+    whole.then_some(piston)
 }

@@ -20,7 +20,7 @@ use super::elements::elements;
 use super::footing::Support;
 use super::ghosts::ghost_depth;
 use super::{Dimension, Point, Scene};
-use inflows::source;
+use inflows::{piston, source};
 use joins::{Standing, join_boxes};
 use memory::check_memory;
 use overlap::check_overlap;
@@ -49,7 +49,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         Scheme::PaperB(_) => elements::<D>(scene),
         Scheme::Implicit | Scheme::PaperA(_) => walls::<D>(scene, &periodic),
     };
-    let sources: Vec<_> = scene.inflows.iter().map(|i| source(scene, i)).collect();
+    let mut sources: Vec<_> = scene.inflows.iter().map(|i| source(scene, i)).collect();
     let sinks = scene
         .outflows
         .iter()
@@ -80,6 +80,9 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
             sides,
         };
         join_boxes(scene, &mut walls, &standing);
+    }
+    for (source, inflow) in sources.iter_mut().zip(&scene.inflows) {
+        source.piston = piston(scene, inflow, source, &walls);
     }
     let movers = movers(scene, &walls);
     let plan = Plan {
