@@ -263,6 +263,7 @@ mod tests {
                 moves: false,
                 wants_force: false,
                 spin: [0.0; 3],
+                drift: [0.0; 3],
             }],
             ..WallPoints::default()
         };

@@ -18,6 +18,8 @@ pub struct GroupSpec {
     pub wants_force: bool,
     /// Angular velocity, by which its velocity changes from place to place: about z in the plane [rad/s].
     pub spin: [f64; 3],
+    /// Velocity of the centre that it turns about, where it turns [m/s].
+    pub drift: [f64; 3],
 }
 
 /// All wall points: fixed walls first, then gates.

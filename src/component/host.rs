@@ -30,6 +30,12 @@ impl HostSettings {
         }
     }
 
+    /// Whether a log is asked for: a blank path is none.
+    #[must_use]
+    pub fn logs(&self) -> bool {
+        !self.log_path.trim().is_empty()
+    }
+
     /// Whether Zenoh is asked for: a blank configuration is none.
     #[must_use]
     pub fn publishes(&self) -> bool {

@@ -64,7 +64,7 @@ impl std::fmt::Display for Failure {
         match self.written {
             Some(written) => write!(
                 f,
-                "log stopped at simulated time {written} s, noticed at {} s: {}",
+                "log stopped at simulated time {} s, what is known to be written reaches {written} s: {}",
                 self.time, self.cause
             ),
             None => write!(

@@ -53,6 +53,7 @@ fn column(
         moves: false,
         wants_force: false,
         spin: [0.0; 3],
+        drift: [0.0; 3],
     });
     if floor {
         for (x, normal, weight) in polyline_points(&[[0.0, 0.0], [1.0, 0.0]], false, DP) {

@@ -5,7 +5,7 @@
 //! towards the material, in bends of what the particle sees of it (`bend`), P = n n^T at free slip and 1 at no slip.
 
 use crate::boundary::GroupSpec;
-use crate::math::{Tensor, Vector, add_outer, along, dot, scale, sub, trace};
+use crate::math::{Tensor, Vector, add_outer, along, apply, dot, scale, skew, sub, trace};
 use crate::state::State;
 
 use super::Solver;
@@ -203,10 +203,34 @@ impl<const D: usize> Solver<D> {
         let seen = face.seen(&v);
         let approach = 2.0 * dot(&seen, &point.x);
         sums.add_pair(&point.x, approach, -point.vf, self.has_fluids);
+        if own.is_fluid {
+            sums.curvature += self.wall_curvature(own.v, point);
+        }
         // Sliding along a free-slip face costs nothing: only the part it sees bounds the step, unless the face
         // itself comes along.
         let v = if point.spec.moves { v } else { seen };
         sums.speed2 = sums.speed2.max(dot(&v, &v));
+    }
+
+    /// What a point adds to K of (E20): how div v of (E14b) changes on a step's straight way towards it, and by its own way round.
+    fn wall_curvature(&self, v: &Vector<D>, point: &Seen<'_, D>) -> f64 {
+        let (x, spec) = (&point.x, point.spec);
+        let comes_along = self.wall_moves(point.group);
+        let motion = if comes_along {
+            point.velocity
+        } else {
+            self.point_velocity(point.wall)
+        };
+        let u = sub(v, &motion);
+        let (r, along) = (point.r2.sqrt(), dot(&u, x));
+        let steeper = self.kernel.f_slope(r) / (self.kernel.f(r) * r);
+        let mut sum = dot(&u, &u) + steeper * along * along;
+        if comes_along && spec.spin != [0.0; 3] {
+            let drift: Vector<D> = std::array::from_fn(|k| spec.drift[k]);
+            let inwards = apply(&skew(&spec.spin), &sub(&motion, &drift));
+            sum -= dot(&inwards, x);
+        }
+        2.0 * point.vf * sum
     }
 }
 

@@ -82,7 +82,8 @@ fn check<T>(pointer: *const T, count: usize, what: &str) -> Result<(), Fault> {
         .is_some_and(|bytes| isize::try_from(bytes).is_ok());
     if !fits || !pointer.is_aligned() {
         return Err(Fault::border(format!(
-            "{what}: {count} values at {pointer:p} are no array; look at the types of the call"
+            "{what}: found {count} values at {pointer:p}, expected an array aligned to {} bytes; look at the types of the call",
+            align_of::<T>()
         )));
     }
     Ok(())

@@ -22,7 +22,7 @@ impl Journal {
     /// whether it did.
     pub(crate) fn open(&mut self, component: &Component, start: f64) -> Result<bool, Fault> {
         let settings = component.host_settings();
-        let (logs, publishes) = (!settings.log_path.is_empty(), settings.publishes());
+        let (logs, publishes) = (settings.logs(), settings.publishes());
         if !logs && !publishes {
             return Ok(false);
         }
@@ -142,7 +142,7 @@ impl Journal {
     /// required.
     pub(crate) fn may_refuse(&self, component: &Component) -> bool {
         let settings = component.host_settings();
-        let logs = self.log.is_none() && !settings.log_path.is_empty();
+        let logs = self.log.is_none() && settings.logs();
         let publishes = self.network.is_none() && settings.publishes();
         settings.log_required && (logs || publishes)
     }
@@ -168,7 +168,7 @@ impl Journal {
                 Err(fault) => faults.push(fault.to_string()),
             }
         }
-        if self.log.is_none() && !settings.log_path.is_empty() {
+        if self.log.is_none() && settings.logs() {
             match self.create(there, ("restored", there.time())) {
                 Ok(log) => begun.log = Some(log),
                 Err(fault) if settings.log_required => {

@@ -167,7 +167,7 @@ mod tests {
         // The rate of the first row held over no step.
         let told = note(&[9.0, 3.0, 1.0], &[0.0, 0.0, 1.0]).unwrap();
         assert!(told.contains("inflow.in let in 1 of 5 kg wanted"), "{told}");
-        assert!(told.contains("above the surface"), "{told}");
+        assert!(told.contains("a spacing of free room"), "{told}");
     }
 
     #[test]

@@ -85,7 +85,9 @@ fn a_failure_names_the_time_to_which_the_file_reaches() {
     assert_eq!((counts.written, counts.dropped), (20, 20));
     let told = failure.unwrap().to_string();
     assert!(
-        told.starts_with("log stopped at simulated time 0.19 s, noticed at 0.39 s: "),
+        told.starts_with(
+            "log stopped at simulated time 0.39 s, what is known to be written reaches 0.19 s: "
+        ),
         "{told}"
     );
 }

@@ -21,6 +21,7 @@ pub(super) fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> Wa
         let motion = rigid_motion::<D>(&wall.velocity, wall.rotation.as_ref());
         points.groups.push(GroupSpec {
             spin: motion.spin(),
+            drift: wall.velocity,
             ..group(scene, wall.slip, wall.rigid, ForceTarget::Wall(n))
         });
         match &wall.geometry {
@@ -167,6 +168,7 @@ pub(in crate::scene) fn group(
         moves,
         wants_force,
         spin: [0.0; 3],
+        drift: [0.0; 3],
     }
 }
 

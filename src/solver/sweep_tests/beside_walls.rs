@@ -32,6 +32,7 @@ fn on_floor(
         moves: false,
         wants_force: false,
         spin: [0.0; 3],
+        drift: [0.0; 3],
     });
     let (mut solver, mut state) =
         disordered_on::<2>(clay(), Geometry::Planar { width: 0.3 }, 20, floor);
@@ -75,6 +76,7 @@ fn acoustic_steps_have_the_steps_own_divergence_beside_walls() {
             moves: false,
             wants_force: false,
             spin: [0.0; 3],
+            drift: [0.0; 3],
         });
     }
     let plane = Geometry::Planar { width: 0.3 };
@@ -155,6 +157,7 @@ fn images_of_sand_in_a_smooth_floor_keep_momentum_and_energy() {
         moves: false,
         wants_force: false,
         spin: [0.0; 3],
+        drift: [0.0; 3],
     });
     let (solver, state) = disordered_on::<3>(Material::sand_04(), Geometry::Space, 8, floor);
     let v = &state.grains.velocity;

@@ -94,3 +94,61 @@ fn a_block_in_flight_turns_on() {
         assert!((spin(&unit) / 5.0 - 1.0).abs() < 0.02);
     }
 }
+
+/// Water that turns as one with a drum that it fills, or in a smooth one that stands, keeps its pressure: rho w^2 r^2/2 more at r than in
+/// the middle, as at the start. Gravity tells what is up, and 10 Pa.
+#[test]
+fn a_full_drum_of_water_that_turns_keeps_its_pressure() {
+    let turns = "motion = \"rigid\"\nangular_velocity = 4\ncentre = [0, 0]";
+    for wall in [turns, "slip = \"free_slip\""] {
+        let text = format!(
+            r#"
+name = "drum"
+[domain]
+lower = [-0.25, -0.25]
+upper = [0.25, 0.25]
+gravity = 0.1
+[numerics]
+spacing = 0.01
+sound_speed = 10
+[materials.water]
+law = "fluid"
+preset = "water"
+[bodies.water]
+material = "water"
+circle = {{ centre = [0, 0], radius = 0.1 }}
+angular_velocity = 4
+centre = [0, 0]
+[walls.drum]
+circle = {{ centre = [0, 0], radius = 0.1 }}
+{wall}
+[gauges.middle]
+kind = "pressure"
+at = [0, 0]
+[gauges.out]
+kind = "pressure"
+at = [0.08, 0]
+[run]
+step = 0.02
+until = 2
+"#
+        );
+        let scene = scene::parse("drum.toml", &text).unwrap_or_else(|e| panic!("{e}"));
+        let mut unit = Unit::new(&scene);
+        unit.run_to(1.5);
+        let steps = 25;
+        let (mut middle, mut out) = (0.0, 0.0);
+        for _ in 0..steps {
+            unit.step();
+            middle += unit.get("gauge.middle.pressure") / f64::from(steps);
+            out += unit.get("gauge.out.pressure") / f64::from(steps);
+        }
+        let exact = 0.5 * 1000.0 * (4.0_f64 * 0.08).powi(2);
+        println!(
+            "{middle} Pa in the middle, {} more outside for {exact}",
+            out - middle
+        );
+        assert!(middle < 20.0, "{middle}");
+        assert!(((out - middle) / exact - 1.0).abs() < 0.05, "{out}");
+    }
+}
