@@ -6,7 +6,7 @@ use crate::solver::{Scheme, Source};
 
 use super::narrow;
 use super::particles::particle_mass;
-use crate::scene::{Dimension, Inflow, Point, Scene};
+use crate::scene::{Dimension, Inflow, Point, Scene, Wall};
 
 /// Least cosine between a wall's face and that of an inflow which lies on it [1].
 const SAME: f64 = 0.99;
@@ -94,7 +94,8 @@ pub(super) fn piston<const D: usize>(
     piston.take(walls, |piston, i| {
         let behind = |x: &Vector<D>| piston.ahead(x).is_some_and(|d| d < 0.0 && d > -deep);
         let wall = scene.walls.get(usize::from(walls.group[i]));
-        wall.is_some_and(|w| !w.rigid && w.velocity == [0.0; 3])
+        let stands = |w: &Wall| !w.rigid && w.velocity == [0.0; 3] && w.rotation.is_none();
+        wall.is_some_and(stands)
             && dot(&walls.normal[i], piston.normal()) > SAME
             && behind(&walls.position[i])
     });
