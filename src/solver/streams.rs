@@ -34,10 +34,15 @@ impl<const D: usize> Solver<D> {
             let Some(piston) = &source.piston else {
                 continue;
             };
-            let faster = self.thrust(state, (source, piston), state.inflows[n].advance) * dt;
-            let inflow = &mut state.inflows[n];
             let row = source.row_mass();
             let asked = rates[n].max(0.0) / row;
+            // Only a stream that runs looks at what stands before it.
+            let faster = if asked > 0.0 {
+                self.thrust(state, (source, piston), state.inflows[n].advance) * dt
+            } else {
+                0.0
+            };
+            let inflow = &mut state.inflows[n];
             inflow.pending += rates[n].max(0.0) * dt;
             let behind = (inflow.pending / row - inflow.advance).max(0.0);
             let wanted = (behind / dt).min(CATCHING_UP * asked);

@@ -56,8 +56,8 @@ fn blocked(inflow: &Inflow, spacing: f64, rate: &Figures, mass: &Figures) -> Opt
     (lost > 2.0 * row && lost > LITTLE * wanted).then(|| {
         format!(
             "note: inflow.{} let in {} of {} kg wanted; it was blocked by what stands before its face:\n  \
-             a fluid let in through a wall needs room to push it into, anything else a spacing of free room; put the face above\n  \
-             the surface, or make it higher than what stands before it.",
+             a fluid let in through a wall needs room to push it into, anything else a spacing of free room;\n  \
+             put it above the surface, or make it higher than what stands before it.",
             inflow.name,
             short(admitted),
             short(wanted)
@@ -168,6 +168,7 @@ mod tests {
         let told = note(&[9.0, 3.0, 1.0], &[0.0, 0.0, 1.0]).unwrap();
         assert!(told.contains("inflow.in let in 1 of 5 kg wanted"), "{told}");
         assert!(told.contains("a spacing of free room"), "{told}");
+        assert!(told.contains("above the surface"), "{told}");
     }
 
     #[test]
