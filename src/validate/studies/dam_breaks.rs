@@ -17,7 +17,8 @@ pub(super) const STUDY: Study = Study {
 friction):\n\n\
     dry: h = (2 c - x/t)^2/(9 g), c = sqrt(g H);   wet: a plateau of 0.1426 m behind a bore of 1.641 m/s.\n\n\
 Water falls from rest at first, which those equations do not know: depths come later than theirs by a time that the fall takes, the same \
-for good. It stands beside each place as its lag, (x - x_exact)/(dx/dt): a scheme that is at fault lags more and more.\n\n\
+for good. It stands beside each place as its lag, (x - x_exact)/(dx/dt): a scheme that is at fault lags more and more. The bore is \
+no step: its place is that of a step with the exact plateau that holds the same water.\n\n\
 Whether the scheme has a part in what is left is told by the change of each number from one spacing to the next (30 to 60, and from 60 \
 to 200 particles over the depth at the first time), and, at the coarsest, by another start and by 1.5 times the sound speed. The finest runs have the first \
 2 m of the reservoir, which is what moves until they end at 6 sqrt(H/g).",

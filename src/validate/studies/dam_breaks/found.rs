@@ -31,6 +31,17 @@ fn reach(surface: &[(f64, f64)], depth: f64) -> Option<f64> {
     Some(a.0 + (a.1 - depth) / (a.1 - b.1) * (b.0 - a.0))
 }
 
+/// Where a bore of this plateau would be that holds as much water beyond `from` as there is [m]: a jump is where it conserves mass,
+/// whatever its shape. Drops that it throws ahead, which a place of given depth would catch, count with their water.
+fn jump(surface: &[(f64, f64)], from: f64, plateau: f64) -> Option<f64> {
+    let beyond: Vec<_> = surface.iter().filter(|p| p.0 >= from).collect();
+    let steps = beyond.windows(2);
+    let water: f64 = steps
+        .map(|p| (0.5 * (p[0].1 + p[1].1) - WET) * (p[1].0 - p[0].0))
+        .sum();
+    Some(beyond.first()?.0 + water / (plateau - WET))
+}
+
 /// Depth of the dry bed's solution [m].
 pub(super) fn ritter(x: f64, t: f64) -> f64 {
     let c = (GRAVITY * DEPTH).sqrt();
@@ -170,11 +181,48 @@ impl Found {
         );
         let mut metrics = vec![level.unit("m").changed_by(changes)];
         metrics.extend(self.place(
-            format!("wet, {what}: bore, where the depth is half way"),
-            |s| reach(s, 0.5 * (plateau + WET)),
+            format!("wet, {what}: bore, by the water ahead of the plateau"),
+            |s| jump(s, to, plateau),
             bore,
             "Stoker; asked at H/dp 200",
         ));
+        let (half_way, _) = self.number(|s| reach(s, 0.5 * (plateau + WET)));
+        metrics.push(
+            Metric::new(
+                format!("wet, {what}: outermost place where the depth is half way"),
+                half_way,
+                Rule::Report(Some(bore * self.time)),
+                "drops that the bore throws ahead count as the bore",
+            )
+            .unit("m"),
+        );
         metrics
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_jump_is_where_its_water_ends() {
+        let (plateau, ..) = PLATEAU;
+        let depth = |x: f64| {
+            // A ramp about 1.7 m, and a drop ahead that holds 4 mm of the bore's way.
+            let ramp = plateau + (WET - plateau) * ((x - 1.6) / 0.2).clamp(0.0, 1.0);
+            let drop = if (x - 2.0).abs() < 0.5 * FEET {
+                0.2
+            } else {
+                0.0
+            };
+            ramp + drop * (plateau - WET)
+        };
+        let surface: Surface = (0..150)
+            .map(|k| FEET * f64::from(k))
+            .map(|x| (x, depth(x)))
+            .collect();
+        let found = jump(&surface, 1.2, plateau).unwrap();
+        assert!((found - 1.704).abs() < 1e-9, "{found}");
+        assert_eq!(jump(&surface, 9.0, plateau), None);
     }
 }
