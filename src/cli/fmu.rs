@@ -75,8 +75,16 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     ))
 }
 
-/// The archive replaces what is there, but not what it is made of.
+/// The archive replaces what is there, but not what it is made of; its folder is there, which is known before all the work.
 fn check_output(args: &Args, output: &Path) -> Result<(), CliError> {
+    let folder = output.parent().unwrap_or(Path::new(""));
+    if !folder.as_os_str().is_empty() && !folder.is_dir() {
+        return Err(CliError::Usage(format!(
+            "--output: found {}, whose folder does not exist; make {} first, or name a folder that is there",
+            output.display(),
+            folder.display()
+        )));
+    }
     let same = |other: &Path| match (output.canonicalize(), other.canonicalize()) {
         (Ok(output), Ok(other)) => output == other,
         _ => false,

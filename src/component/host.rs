@@ -62,8 +62,9 @@ impl Component {
     ) -> Result<(), Error> {
         const CALL: &str = "set";
         self.check_texts(CALL, references, texts.len())?;
-        if !references.is_empty() {
-            lifecycle::check(Call::SetFixed, self.mode())?;
+        for reference in references {
+            lifecycle::check(Call::SetFixed, self.mode())
+                .map_err(|error| error.about(self.name_of(*reference)))?;
         }
         for (reference, text) in references.iter().zip(texts) {
             match self.name_of(*reference) {

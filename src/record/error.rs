@@ -15,6 +15,12 @@ pub enum RecordError {
         /// The file.
         path: PathBuf,
     },
+    /// A folder has that name.
+    #[error("log file: found the folder {path}, allowed the name of a new file, such as {}", path.join("run.mcap").display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The file cannot be created.
     #[error("cannot create log file {path}: {source}; choose a folder that can be written")]
     Create {

@@ -71,6 +71,9 @@ impl Place {
 
     pub(super) fn create(&self) -> Result<std::fs::File, RecordError> {
         let (path, part) = (self.path(), self.part());
+        if path.is_dir() {
+            return Err(RecordError::Folder { path });
+        }
         if path.exists() {
             return Err(RecordError::Exists { path });
         }

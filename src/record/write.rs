@@ -64,7 +64,7 @@ impl Recorder {
     /// component has been initialised already, its state, so that the file is whole without any other.
     ///
     /// # Errors
-    /// [`RecordError::Exists`], [`RecordError::Create`], [`RecordError::Instance`], [`RecordError::Component`];
+    /// [`RecordError::Exists`], [`RecordError::Folder`], [`RecordError::Create`], [`RecordError::Instance`], [`RecordError::Component`];
     /// [`RecordError::Required`] if the first bytes cannot be written.
     pub fn create(
         path: &Path,

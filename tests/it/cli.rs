@@ -157,6 +157,8 @@ fn wrong_use_is_refused_with_code_2() {
     desk.refused(&["run", &silo, "--threads", "1000"], 2, &["1000", "256"]);
     desk.refused(&["run", &silo, "--force"], 2, &["--out"]);
     desk.refused(&["fmu", &silo, "--fmi", "1"], 2, &["2..=3"]);
+    let words = ["whose folder does not exist", "make nowhere first"];
+    desk.refused(&["fmu", &silo, "--output", "nowhere/silo.fmu"], 2, &words);
     assert!(!desk.path("out").exists(), "a refused run left a folder");
 }
 

@@ -129,6 +129,13 @@ fn a_run_whose_files_cannot_grow_tells_of_its_log() {
         );
         let output = Command::new("sh").args(["-c", &script]).output().unwrap();
         judge(&output, &out, required, "File too large");
+        // Nor could the state be saved, and nobody looks for it in vain.
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            said.contains(" s is not saved; none was in this run"),
+            "{said}"
+        );
+        assert!(!out.join("checkpoint.state").exists());
     }
 }
 

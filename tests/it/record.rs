@@ -315,6 +315,11 @@ fn a_restored_component_goes_on_in_a_file_of_its_own() {
         panic!("a log was overwritten");
     };
     assert!(error.to_string().contains("exists already"), "{error}");
+    let options = RecordOptions::of(&component);
+    let Err(error) = Recorder::create(folder.path(), &component, options) else {
+        panic!("a log was written to a folder");
+    };
+    assert!(error.to_string().contains("found the folder"), "{error}");
 }
 
 #[test]

@@ -135,8 +135,11 @@ def rescued_fmu(version, folder):
     assert refused(fmu.step, t, H) and refused(fmu.restore, early)
     assert "states can be saved" in fmu.messages[-1][2]
     assert fmu.save() == late
-    # Without the log it does.
+    # Without the log it does, and nothing says that it does not.
+    fmu.messages.clear()
     fmu.reset()
+    told = [text for _, _, text in fmu.messages if "log stopped at" in text]
+    assert len(told) == 1 and "goes on without it" in told[0] and "so the run stops" not in told[0], told
     fmu.restore(late)
     fmu.step(t, H)
     assert fmu.get(["time"]) == [t + H]

@@ -2,7 +2,7 @@
 
 use sandgate::component::{Causality, Component, Mode, Start, ValueKind};
 use sandgate::fmi;
-use sandgate::record::{RecordOptions, Recorder};
+use sandgate::record::{RecordError, RecordOptions, Recorder};
 use sandgate::wire::Unobserved;
 use sandgate::wire::messages::AppliedEvent;
 
@@ -204,7 +204,11 @@ impl Journal {
         if let Some(log) = self.take()
             && let Err(error) = log.end(reason)
         {
-            self.complaint = Some(error.to_string());
+            // Its own words end with what a required log keeps from going on: nothing of it goes on here.
+            self.complaint = Some(match error {
+                RecordError::Required(failure) => failure.to_string(),
+                other => other.to_string(),
+            });
         }
         self.close(parting);
     }

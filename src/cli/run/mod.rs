@@ -24,7 +24,7 @@ use super::{CliError, load_scene, quantity, stop, threads};
 use crate::component::read_saved;
 use session::Session;
 
-pub(super) use summary::bound_name;
+pub(super) use summary::{bound_name, short};
 
 /// What may be typed after `sandgate run`.
 #[derive(Debug, clap::Args)]

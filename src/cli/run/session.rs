@@ -84,6 +84,8 @@ pub(super) struct Session {
     pub(super) log: RunLog,
     progress: Progress,
     next_checkpoint: f64,
+    /// Time of the last state that this part saved [s].
+    saved: Option<f64>,
     /// Whether it has been told that a checkpoint could not be written.
     warned: bool,
 }
@@ -164,6 +166,7 @@ impl Session {
             folder,
             series,
             log,
+            saved: None,
             warned: false,
         };
         session.write_summary("running", None)?;
@@ -256,6 +259,7 @@ impl Session {
         self.series.flush()?;
         self.folder
             .replace("checkpoint.state", &self.component.save()?)?;
+        self.saved = Some(self.component.time());
         self.write_summary("running", None)?;
         self.plan_checkpoint();
         Ok(())
@@ -265,11 +269,19 @@ impl Session {
     /// it is saved in its place, and what then stands in the summary is of that one, too. Answers its time [s], if so.
     fn last_checkpoint(&mut self, outcome: &mut Outcome) -> Option<f64> {
         let went_back = self.component.mode() == Mode::Failed && self.component.back_to_kept();
+        let now = self.component.time();
         let saved = match self.component.mode() {
             Mode::Stepping => self.checkpoint(),
             _ => self.series.flush(),
         };
-        let time = (went_back && saved.is_ok()).then(|| self.component.time());
+        if saved.is_err() && self.saved != Some(now) {
+            let before = match self.saved {
+                Some(time) => format!("the last that was is that of t = {time} s"),
+                None => "none was in this run".to_owned(),
+            };
+            tell!("warning: the state at t = {now} s is not saved; {before}");
+        }
+        let time = (went_back && saved.is_ok()).then_some(now);
         outcome.fails_by(saved);
         time
     }

@@ -200,7 +200,7 @@ fn variable_rows(session: &Session) -> Vec<String> {
 }
 
 /// Six significant digits, for people; files hold all digits.
-pub(super) fn short(value: f64) -> String {
+pub(in crate::cli) fn short(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 {
         return "0".to_owned();
