@@ -193,6 +193,9 @@ pub(crate) trait Engine: Send {
     /// Why the scene never sleeps.
     fn stays_awake(&self) -> Option<StaysAwake>;
 
+    /// Whether an inflow pushes what is before it.
+    fn inflow_pushes(&self, inflow: usize) -> bool;
+
     /// Wall and gate particles where they are now, for pictures [m].
     fn wall_points(&self) -> Vec<[f64; 3]>;
 

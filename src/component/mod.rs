@@ -246,6 +246,13 @@ impl Component {
         self.engine.stays_awake()
     }
 
+    /// Whether inflow `inflow` of the scene pushes what is before its face, as a fluid does that comes through a wall that
+    /// stands; else it lets in what there is room for.
+    #[must_use]
+    pub fn inflow_pushes(&self, inflow: usize) -> bool {
+        self.engine.inflow_pushes(inflow)
+    }
+
     /// Wall and gate particles where they are now, for pictures [m].
     #[must_use]
     pub fn wall_points(&self) -> Vec<[f64; 3]> {

@@ -300,6 +300,10 @@ impl<const D: usize> Engine for Simulation<D> {
         self.solver.stays_awake()
     }
 
+    fn inflow_pushes(&self, inflow: usize) -> bool {
+        self.solver.inflow_pushes(inflow)
+    }
+
     fn wall_points(&self) -> Vec<[f64; 3]> {
         let walls = self.solver.walls();
         walls

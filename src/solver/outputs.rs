@@ -17,6 +17,12 @@ impl<const D: usize> Solver<D> {
         self.stays_awake
     }
 
+    /// Whether an inflow pushes what is before it: a fluid's, through a wall that stands (W13).
+    #[must_use]
+    pub fn inflow_pushes(&self, inflow: usize) -> bool {
+        self.sources[inflow].piston.is_some()
+    }
+
     /// Pressure of each particle [Pa].
     #[must_use]
     pub fn pressure(&self) -> &[f64] {

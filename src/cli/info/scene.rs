@@ -1,6 +1,7 @@
 //! What a scene holds and what it leaves out, for people.
 
 use crate::cli::remarks::remarks;
+use crate::cli::run::short;
 use crate::component::{Component, StaysAwake};
 use crate::material::{Grains, Law, Material, MuI};
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
@@ -37,7 +38,7 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
             "  material {name}: left out, nothing is made of it\n"
         ));
     }
-    for line in parts(scene) {
+    for line in parts(scene, component) {
         text.push_str(&format!("  {line}\n"));
     }
     text.push_str(&format!("sleep      {}\n", sleep(scene, component)));
@@ -174,7 +175,7 @@ fn raised_viscosity(scene: &Scene, material: &Material) -> Option<f64> {
 }
 
 /// Walls, devices and gauges, a line each.
-fn parts(scene: &Scene) -> Vec<String> {
+fn parts(scene: &Scene, component: &Component) -> Vec<String> {
     let mut lines = Vec::new();
     for wall in &scene.walls {
         let shape = match &wall.geometry {
@@ -206,10 +207,17 @@ fn parts(scene: &Scene) -> Vec<String> {
             slip(gate.slip)
         ));
     }
-    for inflow in &scene.inflows {
+    for (k, inflow) in scene.inflows.iter().enumerate() {
+        let against = match component.inflow_pushes(k) {
+            true => "pushes what is before it, as its wall came forward with it",
+            false => "comes in where there is room before its face",
+        };
         lines.push(format!(
-            "inflow   {}: {} kg/s at the start, at most {} kg/s of {}",
-            inflow.name, inflow.rate, inflow.max_rate, scene.materials[inflow.material].name
+            "inflow   {}: {} kg/s at the start, at most {} kg/s of {}; {against}",
+            inflow.name,
+            short(inflow.rate),
+            short(inflow.max_rate),
+            scene.materials[inflow.material].name
         ));
     }
     for outflow in &scene.outflows {

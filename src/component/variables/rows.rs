@@ -240,7 +240,7 @@ fn inflow_rows(i: usize, inflow: &Inflow) -> impl Iterator<Item = Row> {
             format!("inflow.{name}.mass"),
             "kg",
             Source::InflowMass(i),
-            format!("mass that inflow {name} let in since the start: behind the sum of its rate by up to a row, and by what was lost while blocked"),
+            format!("mass that inflow {name} let in since the start: behind the sum of its rate by up to a row (two where a fluid comes through a wall), and by what was lost while blocked"),
         ),
         Row::output(
             format!("inflow.{name}.blocked"),
