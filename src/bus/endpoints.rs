@@ -19,7 +19,7 @@ const PROTOCOLS: &[&str] = if cfg!(feature = "tls") {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BadEndpoint {
     /// Not of the form that this build can open.
-    #[error("endpoint {found:?}: allowed is {}/HOST:PORT (this build has no other transport)", PROTOCOLS.join("/HOST:PORT or "))]
+    #[error("endpoint {found:?}: allowed is {}/HOST:PORT, PORT from 0 to 65535 (this build has no other transport)", PROTOCOLS.join("/HOST:PORT or "))]
     Form {
         /// The endpoint.
         found: String,

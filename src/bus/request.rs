@@ -57,9 +57,14 @@ impl Request {
         }
         let body: &[u8] = if body.is_empty() { b"{}" } else { body };
         let value = json::parse(body).map_err(|error| {
-            bad(format!(
-                "body is not JSON as it must be: {error} (NaN and Infinity are not JSON either)"
-            ))
+            let text = String::from_utf8_lossy(body);
+            let none = ["NaN", "Infinity"].iter().any(|word| text.contains(word));
+            let also = if none {
+                " (NaN and Infinity are not JSON either)"
+            } else {
+                ""
+            };
+            bad(format!("body is not JSON as it must be: {error}{also}"))
         })?;
         let fingerprint = json::fingerprint(&value);
         let Value::Object(mut map) = value else {

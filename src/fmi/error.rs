@@ -13,7 +13,7 @@ pub enum Error {
     Library(String),
     /// The file is not a shared library of this program.
     #[error(
-        "{path} is not this program's shared library: {found}; build it with `cargo build --release -p sandgate-fmu`"
+        "{path} is not this program's shared library: {found}; build it with `cargo build --release -p sandgate-fmu`, one with Zenoh with -p sandgate-fmu-zenoh"
     )]
     WrongLibrary {
         /// The file.

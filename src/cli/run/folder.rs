@@ -19,6 +19,9 @@ use crate::whole_file;
 /// What marks a folder as made by `sandgate run`, in `summary.json`.
 pub(super) const MADE_BY: &str = "sandgate run";
 
+/// The state to go on from.
+pub(super) const CHECKPOINT: &str = "checkpoint.state";
+
 /// An output folder that exists and is ours to write to.
 #[derive(Debug)]
 pub(super) struct Folder {
@@ -154,10 +157,15 @@ pub(super) fn holds_run(file: &Path) -> bool {
     earlier_summary(parent(file)).is_some()
 }
 
+/// Whether a saved state stands beside a file, or where it would stand.
+pub(super) fn holds_checkpoint(file: &Path) -> bool {
+    parent(file).join(CHECKPOINT).is_file()
+}
+
 /// What to do about a folder with an earlier run; that can be gone on with only where its checkpoint is there.
 fn taken(path: &Path) -> String {
     let shown = path.display();
-    let checkpoint = path.join("checkpoint.state");
+    let checkpoint = path.join(CHECKPOINT);
     if checkpoint.is_file() {
         let checkpoint = shell_word(&checkpoint);
         return format!(
@@ -188,7 +196,7 @@ fn is_ours(name: &str) -> bool {
     let whole = name.strip_suffix(".part").unwrap_or(name);
     matches!(
         whole_file::unfinished(name).unwrap_or(whole),
-        "summary.json" | "gauges.csv" | "gauges.svg" | "checkpoint.state"
+        "summary.json" | "gauges.csv" | "gauges.svg" | CHECKPOINT
     ) || is_log(whole)
 }
 

@@ -99,6 +99,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
                 action: "read saved state",
                 path: file.clone(),
                 remedy: match source.kind() {
+                    ErrorKind::NotFound if folder::holds_checkpoint(file) => {
+                        "that folder has a checkpoint.state: give that"
+                    }
                     ErrorKind::NotFound if folder::holds_run(file) => {
                         "the run there left none: --checkpoint-every saves them on the way; start it again, with --out and \
                          --force in the same folder"

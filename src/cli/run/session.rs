@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::folder::Folder;
+use super::folder::{CHECKPOINT, Folder};
 use super::log::RunLog;
 use super::progress::Progress;
 use super::series::Series;
@@ -257,8 +257,7 @@ impl Session {
     /// Saves the state; the table is on disk first, so that a resumed run finds its rows.
     fn checkpoint(&mut self) -> Result<(), CliError> {
         self.series.flush()?;
-        self.folder
-            .replace("checkpoint.state", &self.component.save()?)?;
+        self.folder.replace(CHECKPOINT, &self.component.save()?)?;
         self.saved = Some(self.component.time());
         self.write_summary("running", None)?;
         self.plan_checkpoint();
@@ -322,7 +321,7 @@ impl Session {
         outcome.fails_by(summary);
         let said = say(&summary::table(&self, outcome.words().0));
         outcome.fails_by(said);
-        let checkpoint = self.folder.file("checkpoint.state");
+        let checkpoint = self.folder.file(CHECKPOINT);
         if let Some(time) = before_failure {
             tell!(
                 "saved in {}: the state at t = {time} s, before the step that failed. With the same scene, inputs and steps it \

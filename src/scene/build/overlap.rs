@@ -6,58 +6,112 @@ use crate::scene::Scene;
 use crate::solver::{Plan, Scheme};
 use crate::state::{CellGrid, State};
 
-/// No particle may start inside a wall or gate.
+/// What starts may be so near to a point of a wall or gate [spacing].
+const START: f64 = 0.3;
+/// A place of an inflow's row may: it stands half a spacing before its face and in from the face's ends, at least a quarter where that
+/// is short, and points as far behind theirs; within walls no place is further from the nearest than 0.71.
+const SLOT: f64 = 0.74;
+
+/// No particle may start inside a wall or gate, and none may come in there.
 ///
 /// # Errors
-/// A sentence that names the first particle that does, and the wall.
+/// A sentence that names the first particle or the inflow that does, and the wall.
 pub(super) fn check_overlap<const D: usize>(
     scene: &Scene,
     plan: &Plan<D>,
     state: &State<D>,
 ) -> Result<(), String> {
-    let near = 0.3 * plan.numerics.spacing;
-    let sides: [Option<(f64, f64)>; D] = std::array::from_fn(|k| {
-        (plan.periodic.length[k] > 0.0).then(|| (plan.lower[k], plan.upper[k]))
-    });
-    let openings: Vec<f64> = state.gates.iter().map(|g| g.opening).collect();
-    let walls = with_plates(&plan.walls, &plan.plates, &openings);
-    let shown: Vec<usize> = (0..walls.len())
-        .filter(|&w| walls.weight[w] > 0.5)
-        .collect();
-    let visible: Vec<Vector<D>> = shown.iter().map(|&w| walls.position[w]).collect();
-    let cells = CellGrid::build(&visible, plan.numerics.spacing, &sides);
-    // Elements of scheme paper_b lie in the surface itself: what is in front of the nearest one is clear, however near.
-    let in_surface = matches!(plan.numerics.scheme, Scheme::PaperB(_));
+    let obstacles = Obstacles::new(plan, state);
     for x in &state.grains.position {
-        let mut hit = None;
-        let mut nearest = f64::INFINITY;
-        cells.for_each_within(x, near, |w, y, r| {
-            if r < nearest {
-                nearest = r;
-                let behind = dot(&walls.normal[shown[w]], &sub(x, &y)) < 0.0;
-                hit = Some(w).filter(|_| behind || !in_surface);
-            }
-        });
-        if let Some(w) = hit {
+        if let Some(group) = obstacles.holds(x, START) {
             return Err(format!(
-                "a particle starts at {:?} m, inside {}: move the body or the wall apart",
+                "a particle starts at {:?} m, inside {}{}: move the body or the wall apart",
                 &x[..],
-                wall_name(scene, walls.group[shown[w]]),
+                name(scene, group),
+                side(scene, group),
             ));
         }
         if dot(x, x).is_nan() {
             return Err("a particle starts at a position that is not a number".to_owned());
         }
     }
+    for (inflow, source) in scene.inflows.iter().zip(&plan.sources) {
+        for x in &source.slots {
+            if let Some(group) = obstacles.holds(x, SLOT) {
+                return Err(format!(
+                    "inflow {} lets in at {:?} m, inside {}: move its face out of there, to where material has room; on the \
+                     wall's own face it may lie",
+                    inflow.name,
+                    &x[..],
+                    name(scene, group),
+                ));
+            }
+        }
+    }
     Ok(())
 }
 
-/// Of a group of wall points. Planar gates are checked before, so that a gate here stands in space.
-fn wall_name(scene: &Scene, group: u16) -> String {
-    let n = usize::from(group);
-    if let Some(wall) = scene.walls.get(n) {
-        return format!("wall {}", wall.name);
+/// Points of walls and of gates as they start.
+struct Obstacles<const D: usize> {
+    normal: Vec<Vector<D>>,
+    group: Vec<u16>,
+    cells: CellGrid<D>,
+    spacing: f64,
+    /// Elements of scheme paper_b lie in the surface itself: what is in front of the nearest one is clear, however near.
+    in_surface: bool,
+}
+
+impl<const D: usize> Obstacles<D> {
+    fn new(plan: &Plan<D>, state: &State<D>) -> Self {
+        let spacing = plan.numerics.spacing;
+        let sides: [Option<(f64, f64)>; D] = std::array::from_fn(|k| {
+            (plan.periodic.length[k] > 0.0).then(|| (plan.lower[k], plan.upper[k]))
+        });
+        let openings: Vec<f64> = state.gates.iter().map(|g| g.opening).collect();
+        let walls = with_plates(&plan.walls, &plan.plates, &openings);
+        let shown = || (0..walls.len()).filter(|&w| walls.weight[w] > 0.5);
+        let position: Vec<Vector<D>> = shown().map(|w| walls.position[w]).collect();
+        Self {
+            cells: CellGrid::build(&position, spacing, &sides),
+            normal: shown().map(|w| walls.normal[w]).collect(),
+            group: shown().map(|w| walls.group[w]).collect(),
+            spacing,
+            in_surface: matches!(plan.numerics.scheme, Scheme::PaperB(_)),
+        }
     }
-    let gate = &scene.gates[n - scene.walls.len()].name;
-    format!("gate {gate}, whose material belongs on the side of span x (to - from)")
+
+    /// The group of the nearest point within so many spacings of a place, if that is no place before it.
+    fn holds(&self, x: &Vector<D>, near: f64) -> Option<u16> {
+        let mut hit = None;
+        let mut nearest = f64::INFINITY;
+        self.cells
+            .for_each_within(x, near * self.spacing, |w, y, r| {
+                if r < nearest {
+                    nearest = r;
+                    let behind = dot(&self.normal[w], &sub(x, &y)) < 0.0;
+                    hit = Some(self.group[w]).filter(|_| behind || !self.in_surface);
+                }
+            });
+        hit
+    }
+}
+
+/// What a group of wall points belongs to.
+fn name(scene: &Scene, group: u16) -> String {
+    let n = usize::from(group);
+    match scene.walls.get(n) {
+        Some(wall) => format!("wall {}", wall.name),
+        None => format!(
+            "gate {} as it starts",
+            scene.gates[n - scene.walls.len()].name
+        ),
+    }
+}
+
+/// On which side of it bodies belong: planar gates were looked at before, so that a gate here stands in space.
+fn side(scene: &Scene, group: u16) -> &'static str {
+    match scene.walls.get(usize::from(group)) {
+        Some(_) => "",
+        None => ", whose material belongs on the side of span x (to - from)",
+    }
 }

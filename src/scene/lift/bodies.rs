@@ -134,10 +134,14 @@ impl Lift<'_> {
 
     fn column(&mut self, at: &At<RawColumn>) -> Option<Shape> {
         if self.planar() {
+            let shapes = match self.axisymmetric() {
+                true => "box or polygon",
+                false => "box, polygon or circle",
+            };
             self.problems.report(
                 &at.place,
                 format!("a column in {}", self.kind()),
-                format!("box or polygon, because {}", self.dimension_key()),
+                format!("{shapes}, because {}", self.dimension_key()),
                 "use a box (in an axisymmetric scene one from r = 0 is a column), or set dimension = 3",
             );
             return None;

@@ -11,7 +11,7 @@ table! {
         optional quality: QualityWord, default "standard";
         /// Smoothing length over particle spacing.
         optional smoothing_ratio: Ratio, in Range::within(1.2, 2.5), default 1.6;
-        /// Artificial sound speed c0; if left out, 10 max(sqrt(g H), expected_speed), H the greatest height of material.
+        /// Artificial sound speed c0; if left out, 10 max(sqrt(g H), expected_speed), H the greatest height of material. For pressures beyond rho g H, as under a piston or of a viscous fluid in a gap, give more: up to 0.005 rho c0^2 they are right to about a percent.
         optional sound_speed: Speed, in Range::above(0.0);
         /// Largest speed that the flow is expected to reach; raises the sound speed. Give it when material moves faster than sqrt(g H).
         optional expected_speed: Speed, in Range::from(0.0), default 0;

@@ -155,7 +155,12 @@ impl Field for Whole {
         };
         if value.is_none() {
             let found = describe(node.value());
-            let allowed = "a whole number, 0 or more";
+            let is_large =
+                matches!(node.value(), DeValue::Integer(i) if !i.as_str().starts_with('-'));
+            let allowed = match is_large {
+                true => format!("a whole number, 0 to {}", u64::MAX),
+                false => "a whole number, 0 or more".to_owned(),
+            };
             problems.report(node.place(), found, allowed, "write for example 500");
         }
         value.map(Self)

@@ -36,6 +36,12 @@ fn a_failed_step_leaves_the_state_before_it() {
 fn a_run_without_a_checkpoint_is_not_offered_to_go_on() {
     let (desk, silo) = (Desk::new(), small_silo());
     desk.ok(&["run", &silo, "--out", "run", "--until", "10 ms"]);
+    // A slip of the pen is none: what is there is not to be overwritten.
+    desk.refused(
+        &["run", &silo, "--resume", "run/chekpoint.state"],
+        5,
+        &["that folder has a checkpoint.state: give that"],
+    );
     std::fs::remove_file(desk.path("run/checkpoint.state")).unwrap();
     let output = desk.call(&["run", &silo, "--out", "run"]);
     let text = stderr(&output);

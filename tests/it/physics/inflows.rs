@@ -1,7 +1,8 @@
 //! Inflows: streams of fluids that push through a wall, and faces in the open beside material that stands before a part of them.
 
 use super::Unit;
-use sandgate::scene;
+use sandgate::component::Component;
+use sandgate::scene::{self, Scene};
 
 const G: f64 = 9.81;
 /// Height of the face [m].
@@ -36,13 +37,17 @@ step = 0.02
 until = 1.5
 "#;
 
-fn unit(edits: &[(&str, &str)]) -> Unit {
+fn channel(edits: &[(&str, &str)]) -> Scene {
     let mut text = CHANNEL.to_owned();
     for (old, new) in edits {
         assert!(text.contains(old), "no {old:?} to replace");
         text = text.replace(old, new);
     }
-    Unit::new(&scene::parse("channel.toml", &text).unwrap_or_else(|e| panic!("{e}")))
+    scene::parse("channel.toml", &text).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn unit(edits: &[(&str, &str)]) -> Unit {
+    Unit::new(&channel(edits))
 }
 
 /// A wall right behind the face, or three spacings behind it.
@@ -236,4 +241,47 @@ fn a_face_in_the_open_under_material_is_blocked() {
     unit.run_to(0.5);
     assert_eq!(unit.get("inflow.feed.mass"), 0.0);
     assert_eq!(unit.get("inflow.feed.blocked"), 1.0);
+}
+
+/// What comes in has room: a face within a wall's rows of points, or within a plate as it starts, is refused by name.
+#[test]
+fn an_inflow_inside_a_wall_or_a_shut_gate_is_refused() {
+    const GATE: &str =
+        "[gates.g]\nfrom = [0.5, 0]\nto = [0.5, 0.2]\nthickness = 0.08\nstart = 0\n[outflows.end]";
+    let shut = "from = [0.56, 0.1]\nto = [0.52, 0.1]";
+    let refused = |face: &str, velocity: &str, gate: bool| {
+        let velocity = format!("velocity = {velocity}\nrate = 1");
+        let mut edits = vec![
+            ("from = [0, 0.12]\nto = [0, 0]", face),
+            (
+                "velocity = [0.8333333333, 0]\nrate = 99.99",
+                velocity.as_str(),
+            ),
+        ];
+        if gate {
+            edits.push(("[outflows.end]", GATE));
+        }
+        Component::new(&channel(&edits))
+            .err()
+            .map(|error| error.to_string())
+    };
+    for depth in [0.01, 0.02, 0.03, 0.05] {
+        let face = format!("from = [0.4, -{depth}]\nto = [0.2, -{depth}]");
+        let error = refused(&face, "[0, -0.5]", false).unwrap();
+        assert!(
+            error.contains("inflow feed") && error.contains("inside wall bed"),
+            "{error}"
+        );
+    }
+    // On the wall's face it comes out of it.
+    assert_eq!(
+        refused("from = [0.2, 0]\nto = [0.4, 0]", "[0, 0.5]", false),
+        None
+    );
+    let error = refused(shut, "[0, -0.5]", true).unwrap();
+    assert!(error.contains("inside gate g as it starts"), "{error}");
+    assert_eq!(
+        refused("from = [0.46, 0.1]\nto = [0.42, 0.1]", "[0, -0.5]", true),
+        None
+    );
 }
