@@ -4,6 +4,7 @@ use super::series::Figures;
 use super::session::Session;
 use super::summary::{extremes, short};
 use crate::cli::remarks::remarks;
+use crate::gauge::Validity;
 use crate::scene::{Inflow, InputTarget, Scene};
 
 /// A larger share of fast mass than that of single splashes is worth a word, and of the time in which a gate stood still.
@@ -40,6 +41,11 @@ pub(super) fn notes(session: &Session) -> Vec<String> {
         .chain(squeezed(session))
         .chain(blocked)
         .chain(held)
+        .chain(scene.gauges.iter().filter_map(|gauge| {
+            let flag = format!("gauge.{}.validity", gauge.name);
+            let column = series.columns.iter().find(|c| c.name == flag)?;
+            silent(&gauge.name, &column.figures?)
+        }))
         .chain(remarks(scene))
         .collect()
 }
@@ -76,6 +82,22 @@ fn held(name: &str, whole: f64, stood: f64, (wanted, opening): (f64, f64)) -> Op
             short(stood),
             short(whole),
             short(opening),
+        )
+    })
+}
+
+/// A gauge that measured at no time, though not for want of material: `flag` is its validity.
+fn silent(name: &str, flag: &Figures) -> Option<String> {
+    let outside = f64::from(Validity::Outside.code());
+    (flag.low.0 >= outside).then(|| {
+        let place = match flag.last > outside {
+            true => "within a wall or a gate",
+            false => "outside of the domain",
+        };
+        format!(
+            "note: gauge.{name} read 0 all the time and measured nothing: its place was {place} (validity {}).\n  \
+             Move it to where material comes; docs/gauges.md says what each gauge needs.",
+            flag.last
         )
     })
 }
@@ -199,6 +221,21 @@ mod tests {
         // What holds at the start held over no step.
         assert_eq!(note(&[1.0, 0.0, 0.0, 0.0]), None);
         assert_eq!(note(&[0.0; 4]), None);
+    }
+
+    #[test]
+    fn a_gauge_that_never_measured_is_told_with_why() {
+        let note = |flags: &[f64]| silent("level", &figures(&[0.0, 1.0, 3.0], flags));
+        let told = note(&[3.0, 3.0, 3.0]).unwrap();
+        assert!(told.contains("gauge.level read 0 all the time"), "{told}");
+        assert!(
+            told.contains("within a wall or a gate (validity 3)"),
+            "{told}"
+        );
+        assert!(note(&[2.0; 3]).unwrap().contains("outside of the domain"));
+        // Empty is a measurement, and a gate may cover a place for a while.
+        assert_eq!(note(&[1.0; 3]), None);
+        assert_eq!(note(&[3.0, 0.0, 3.0]), None);
     }
 
     #[test]
