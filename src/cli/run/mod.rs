@@ -11,6 +11,7 @@ mod lock;
 mod log;
 mod notes;
 mod plot;
+mod profile;
 mod progress;
 mod series;
 mod session;

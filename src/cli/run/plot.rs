@@ -1,9 +1,15 @@
-//! `gauges.svg`: gauges, devices and inputs over time, one panel a unit, so that a run can be judged at a glance.
+//! `gauges.svg`: gauges, devices and inputs over time, one panel a unit, and profiles along their lines, one panel each, so that a
+//! run can be judged at a glance.
 //!
-//! Elements of profiles, counts and the solver's own figures are left to `gauges.csv`. Samples whose gauge says
+//! Counts and the solver's own figures are left to `gauges.csv`. Samples whose gauge says
 //! they are not valid (empty, outside, blocked) are gaps in the curve.
 
+mod profiles;
+
+use std::ops::Range;
+
 use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::curve::{Curve, Point};
@@ -27,6 +33,7 @@ const COLOURS: [RGBColor; MOST_CURVES] = [
 
 type Failed = Box<dyn std::error::Error>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Draws the picture.
 ///
@@ -36,20 +43,24 @@ pub(super) fn svg(title: &str, series: &Series) -> Result<String, Failed> {
     let panels = panels(&series.columns);
     let mut picture = String::new();
     {
-        let height = TITLE + PANEL * u32::try_from(panels.len().max(1))?;
+        let count = panels.len() + series.profiles.len();
+        let height = TITLE + PANEL * u32::try_from(count.max(1))?;
         let root = SVGBackend::with_string(&mut picture, (WIDTH, height)).into_drawing_area();
         root.fill(&WHITE)?;
         let (head, body) = root.split_vertically(TITLE);
         // XML has no control characters.
         let title = title.replace(char::is_control, " ");
         head.draw(&Text::new(title, (16, 14), ("sans-serif", 20)))?;
-        if panels.is_empty() {
+        if count == 0 {
             let text = "this case has no gauges, gates, inflows or outflows to draw";
             body.draw(&Text::new(text, (16, 40), ("sans-serif", 15)))?;
         }
-        let areas = body.split_evenly((panels.len().max(1), 1));
+        let areas = body.split_evenly((count.max(1), 1));
         for (panel, area) in panels.iter().zip(&areas) {
             draw_panel(area, panel, series)?;
+        }
+        for (profile, area) in series.profiles.iter().zip(&areas[panels.len()..]) {
+            profiles::draw(area, profile, &series.columns[profile.first])?;
         }
         root.present()?;
     }
@@ -86,27 +97,9 @@ fn panels(columns: &[Column]) -> Vec<Panel<'_>> {
 fn draw_panel(area: &Area, panel: &Panel, series: &Series) -> Result<(), Failed> {
     let (plot, legend) = area.split_horizontally(WIDTH - LEGEND);
     let (start, end) = series.span.unwrap_or((0.0, 1.0));
-    let mut chart = ChartBuilder::on(&plot)
-        .margin(8)
-        .x_label_area_size(38)
-        .y_label_area_size(84)
-        .build_cartesian_2d(start..end.max(start + 1e-9), limits(panel))?;
-    let y_title = match panel.unit {
-        "1" => "share [1]".to_owned(),
-        unit => format!("[{unit}]"),
-    };
-    chart
-        .configure_mesh()
-        .light_line_style(WHITE)
-        .bold_line_style(RGBColor(225, 225, 225))
-        .x_desc("time [s]")
-        .y_desc(y_title)
-        .y_labels(6)
-        .y_label_formatter(&|y| short(*y))
-        .x_label_formatter(&|x| short(*x))
-        .label_style(("sans-serif", 12))
-        .axis_desc_style(("sans-serif", 13))
-        .draw()?;
+    let titles = ("time [s]".to_owned(), unit_title(panel.unit));
+    let times = start..end.max(start + 1e-9);
+    let mut chart = axes(&plot, times, limits(panel), &titles)?;
     for (index, column) in panel.curves.iter().enumerate() {
         let style = COLOURS[index % MOST_CURVES].stroke_width(if column.is_input { 1 } else { 2 });
         for piece in pieces(column, panel.factor) {
@@ -122,8 +115,42 @@ fn draw_panel(area: &Area, panel: &Panel, series: &Series) -> Result<(), Failed>
     Ok(())
 }
 
+/// Empty axes with titles of x and y.
+fn axes<'a, 'b>(
+    plot: &'a Area<'b>,
+    x: Range<f64>,
+    y: Range<f64>,
+    (x_title, y_title): &(String, String),
+) -> Result<Chart<'a, 'b>, Failed> {
+    let mut chart = ChartBuilder::on(plot)
+        .margin(8)
+        .x_label_area_size(38)
+        .y_label_area_size(84)
+        .build_cartesian_2d(x, y)?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .bold_line_style(RGBColor(225, 225, 225))
+        .x_desc(x_title)
+        .y_desc(y_title)
+        .y_labels(6)
+        .y_label_formatter(&|y| short(*y))
+        .x_label_formatter(&|x| short(*x))
+        .label_style(("sans-serif", 12))
+        .axis_desc_style(("sans-serif", 13))
+        .draw()?;
+    Ok(chart)
+}
+
+fn unit_title(unit: &str) -> String {
+    match unit {
+        "1" => "share [1]".to_owned(),
+        unit => format!("[{unit}]"),
+    }
+}
+
 /// Smallest and largest valid value of the panel with a margin, never an empty range.
-fn limits(panel: &Panel) -> std::ops::Range<f64> {
+fn limits(panel: &Panel) -> Range<f64> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for column in &panel.curves {
         for (_, y) in pieces(column, panel.factor).into_iter().flatten() {
@@ -134,6 +161,11 @@ fn limits(panel: &Panel) -> std::ops::Range<f64> {
     if !low.is_finite() || !high.is_finite() {
         return 0.0..1.0;
     }
+    margin(low, high)
+}
+
+/// Some more than this range, never an empty one.
+fn margin(low: f64, high: f64) -> Range<f64> {
     let margin = match high - low {
         0.0 => high.abs().max(1.0) * 0.05,
         range => range * 0.05,

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::curve::Curve;
+use super::profile::Profile;
 use super::table::{EarlierRows, Patient};
 use crate::cli::CliError;
 use crate::component::{Causality, Component, ValueKind, ValueReference, VariableTable};
@@ -109,6 +110,8 @@ pub(super) struct Series {
     pub(super) columns: Vec<Column>,
     /// In the order of the scene.
     pub(super) gates: Vec<GateColumns>,
+    /// In the order of the scene.
+    pub(super) profiles: Vec<Profile>,
     /// For each column the one that says whether it is a measurement.
     validity: Vec<Option<usize>>,
     file: Patient,
@@ -138,6 +141,7 @@ impl Series {
         let mut series = Self {
             span: None,
             gates: gates(component, &references),
+            profiles: Profile::all(component.scene(), &columns),
             validity: columns.iter().map(|c| flag_of(c, &columns)).collect(),
             references,
             columns,
@@ -220,6 +224,9 @@ impl Series {
             }
         }
         self.gates.iter_mut().for_each(|gate| gate.see(values));
+        for profile in &mut self.profiles {
+            profile.see(time, values);
+        }
         self.file.push(&line);
     }
 }
@@ -316,8 +323,8 @@ mod tests {
     /// Everything but the time at which it was written last.
     fn known(series: &Series) -> (Option<(f64, f64)>, String) {
         let columns: Vec<_> = series.columns.iter().collect();
-        let gates = &series.gates;
-        (series.span, format!("{columns:?} {gates:?}"))
+        let (gates, profiles) = (&series.gates, &series.profiles);
+        (series.span, format!("{columns:?} {gates:?} {profiles:?}"))
     }
 
     #[test]
