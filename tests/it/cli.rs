@@ -255,6 +255,9 @@ fn a_run_leaves_every_file_and_keeps_all_mass() {
         "gauge.level.depth",
         "gate.main.opening",
         "time [s]",
+        // The profile, at its moments.
+        "gauge.surface.depth",
+        "t = 0 s",
         "</svg>",
     ] {
         assert!(picture.contains(word), "no {word} in the picture");

@@ -64,7 +64,7 @@ const AFTER_HELP: &str = "\
 The folder then holds:
   run.mcap          everything that went in and out, and particles (Foxglove, Rerun); a resumed run adds run-2.mcap, ...
   gauges.csv        time and all scalar inputs and outputs, a row each communication point, SI, exact decimals
-  gauges.svg        gauges, devices and inputs over time
+  gauges.svg        gauges, devices and inputs over time, and profiles at some moments
   summary.json      every final figure, extremes, steps, CPU and wall time, mass account, state hash
   checkpoint.state  the state to go on from: the last one, or that before a step that failed
 

@@ -122,6 +122,13 @@ fn axes<'a, 'b>(
     y: Range<f64>,
     (x_title, y_title): &(String, String),
 ) -> Result<Chart<'a, 'b>, Failed> {
+    // What is left of a zero among ticks that were added up.
+    let rest = |range: &Range<f64>| 1e-9 * (range.end - range.start);
+    let (x_rest, y_rest) = (rest(&x), rest(&y));
+    let tick = |value: &f64, rest: f64| match value.abs() < rest {
+        true => "0".to_owned(),
+        false => short(*value),
+    };
     let mut chart = ChartBuilder::on(plot)
         .margin(8)
         .x_label_area_size(38)
@@ -134,8 +141,8 @@ fn axes<'a, 'b>(
         .x_desc(x_title)
         .y_desc(y_title)
         .y_labels(6)
-        .y_label_formatter(&|y| short(*y))
-        .x_label_formatter(&|x| short(*x))
+        .y_label_formatter(&|y| tick(y, y_rest))
+        .x_label_formatter(&|x| tick(x, x_rest))
         .label_style(("sans-serif", 12))
         .axis_desc_style(("sans-serif", 13))
         .draw()?;
