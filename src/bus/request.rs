@@ -58,8 +58,8 @@ impl Request {
         let body: &[u8] = if body.is_empty() { b"{}" } else { body };
         let value = json::parse(body).map_err(|error| {
             let text = String::from_utf8_lossy(body);
-            let none = ["NaN", "Infinity"].iter().any(|word| text.contains(word));
-            let also = if none {
+            let names_no_number = ["NaN", "Infinity"].iter().any(|word| text.contains(word));
+            let also = if names_no_number {
                 " (NaN and Infinity are not JSON either)"
             } else {
                 ""

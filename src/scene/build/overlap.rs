@@ -9,7 +9,8 @@ use crate::state::{CellGrid, State};
 /// What starts may be so near to a point of a wall or gate [spacing].
 const START: f64 = 0.3;
 /// A place of an inflow's row may: it stands half a spacing before its face and in from the face's ends, at least a quarter where that
-/// is short, and points as far behind theirs; within walls no place is further from the nearest than 0.71.
+/// is short, and points half a spacing behind theirs. Within walls no place is further from the nearest than 0.71 in the plane, and 0.87
+/// in space, where a face of few places may be missed.
 const SLOT: f64 = 0.74;
 
 /// No particle may start inside a wall or gate, and none may come in there.
