@@ -116,22 +116,30 @@ pub(super) fn whole(
     let Some(value) = map.remove(field) else {
         return Ok(None);
     };
-    let Some(number) = as_whole(&value) else {
-        return Err(wrong(field, &value, "a whole number"));
+    let number = match as_whole(&value) {
+        Some(number) => u64::try_from(number).ok(),
+        None if is_vast(&value) => None,
+        None => return Err(wrong(field, &value, "a whole number")),
     };
-    match u64::try_from(number) {
-        Ok(n) if (least..=most).contains(&n) => Ok(Some(n)),
-        _ => Err(Refusal::new(
+    match number.filter(|n| (least..=most).contains(n)) {
+        Some(number) => Ok(Some(number)),
+        None => Err(Refusal::new(
             Code::Range,
             format!("{field}: found {value}, allowed {least} to {most}"),
         )),
     }
 }
 
+/// Beyond it doubles do not tell whole numbers apart.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// Whether a number is too large to be told from the whole ones beside it: out of every range here.
+fn is_vast(value: &Value) -> bool {
+    value.as_f64().is_some_and(|x| x.abs() > EXACT)
+}
+
 /// A number that is whole, however it is written: Python's `0.01 * 1e9` becomes 10000000.0.
 fn as_whole(value: &Value) -> Option<i128> {
-    /// Beyond it doubles do not tell whole numbers apart.
-    const EXACT: f64 = 9_007_199_254_740_992.0;
     let exact = |x: f64| (x.fract() == 0.0 && x.abs() <= EXACT).then_some(x as i128);
     let integer = value.as_i64().map(i128::from);
     let integer = integer.or(value.as_u64().map(i128::from));

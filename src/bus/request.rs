@@ -129,7 +129,7 @@ mod tests {
 
     /// Requests that are refused, by what code, and a part of what is said.
     #[rustfmt::skip]
-    const REFUSED: [(Verb, &str, Code, &str); 18] = [
+    const REFUSED: [(Verb, &str, Code, &str); 19] = [
         (Verb::Step, r#"{"req":"1","dt_ns":NaN}"#, Code::BadRequest, "NaN and Infinity"),
         (Verb::Step, r#"[1]"#, Code::BadRequest, "an array of 1"),
         (Verb::Step, r#"{"req":"1","dt":1}"#, Code::BadRequest, "unknown field \"dt\"; it takes req, client, t_ns, dt_ns"),
@@ -139,6 +139,7 @@ mod tests {
         (Verb::Step, r#"{"req":"1","dt_ns":0}"#, Code::Range, "dt_ns: found 0, allowed 1 to"),
         (Verb::Step, r#"{"req":"1","dt_ns":-5}"#, Code::Range, "dt_ns: found -5"),
         (Verb::Step, r#"{"req":"1","dt_ns":0.01}"#, Code::Type, "a whole number"),
+        (Verb::Step, r#"{"req":"1","dt_ns":1e30}"#, Code::Range, "dt_ns: found 1e+30, allowed 1 to"),
         (Verb::Step, r#"{"req":"1","t_ns":"now"}"#, Code::Type, "nanoseconds"),
         (Verb::Step, r#"{"req":"1","req":"2"}"#, Code::BadRequest, "stands there twice"),
         (Verb::Set, r#"{"req":"1"}"#, Code::BadRequest, "missing or empty \"inputs\""),

@@ -1,8 +1,7 @@
-//! Moving walls, gates, inflows and outflows: what moves, adds and takes out between two internal steps.
+//! Moving walls, gates and outflows: what moves and takes out between two internal steps.
 
-use crate::boundary::Piston;
-use crate::math::{CHUNK, Vector, add, norm, scale};
-use crate::state::{Grains, State};
+use crate::math::{CHUNK, Vector};
+use crate::state::State;
 
 use super::Solver;
 use super::timestep::MOST_OF_A_PLATE;
@@ -15,28 +14,6 @@ const HELD: f64 = 0.5;
 const TOUCH: f64 = 0.25;
 const PRESSED: f64 = 0.75;
 
-/// Distance from a slot of an inflow within which nothing may be when a particle enters there, over the spacing.
-const ROOM: f64 = 0.6;
-
-/// A face that lets rows of particles in.
-#[derive(Clone, Debug)]
-pub struct Source<const D: usize> {
-    /// Where a row's particles appear [m].
-    pub slots: Vec<Vector<D>>,
-    /// Mass of the particle of each slot [kg].
-    pub masses: Vec<f64>,
-    /// Their velocity [m/s].
-    pub velocity: Vector<D>,
-    /// Index of the material.
-    pub phase: u8,
-    /// Density they come with [kg/m^3].
-    pub density: f64,
-    /// Longer edge of the face [m].
-    pub length: f64,
-    /// What of the wall behind the face comes forward, if what enters pushes.
-    pub piston: Option<Piston<D>>,
-}
-
 /// A box that takes particles out.
 #[derive(Clone, Copy, Debug)]
 pub struct Sink<const D: usize> {
@@ -46,11 +23,11 @@ pub struct Sink<const D: usize> {
     pub upper: Vector<D>,
 }
 
-impl<const D: usize> Source<D> {
-    /// Mass of a row [kg].
+impl<const D: usize> Sink<D> {
+    /// Whether a place is in the box, its sides included.
     #[must_use]
-    pub fn row_mass(&self) -> f64 {
-        self.masses.iter().fold(0.0, |sum, m| sum + m)
+    pub fn holds(&self, x: &Vector<D>) -> bool {
+        (0..D).all(|k| x[k] >= self.lower[k] && x[k] <= self.upper[k])
     }
 }
 
@@ -156,95 +133,11 @@ impl<const D: usize> Solver<D> {
         for (s, sink) in self.sinks.iter().enumerate() {
             for i in 0..state.grains.len() {
                 let x = &state.grains.position[i];
-                let inside = (0..D).all(|k| x[k] >= sink.lower[k] && x[k] <= sink.upper[k]);
-                if inside && !state.grains.drained[i] {
+                if sink.holds(x) && !state.grains.drained[i] {
                     state.grains.drained[i] = true;
                     state.drained[s] += state.grains.mass[i];
                 }
             }
         }
-    }
-
-    /// Lets in what is due of a row, where it has room; returns whether any came.
-    pub(super) fn feed(&mut self, state: &mut State<D>, rates: &[f64], dt: f64) -> bool {
-        let mut came = false;
-        for n in 0..self.sources.len() {
-            if self.sources[n].piston.is_some() {
-                came |= self.let_row_in(state, n);
-                continue;
-            }
-            let source = &self.sources[n];
-            let row = source.row_mass();
-            let inflow = &mut state.inflows[n];
-            if rates[n] <= 0.0 {
-                // Closed: a row that was due and had no room stays out.
-                if inflow.pending >= row {
-                    inflow.pending = 0.0;
-                }
-                continue;
-            }
-            inflow.pending += rates[n] * dt;
-            if inflow.pending < row {
-                continue;
-            }
-            let free = self.free_slots(&state.grains, source, ROOM);
-            let entered = self.enter(state, source, &free);
-            let inflow = &mut state.inflows[n];
-            inflow.pending -= entered;
-            inflow.admitted += entered;
-            came |= entered > 0.0;
-            if free.contains(&false) && inflow.pending >= row {
-                // What cannot enter is refused, not saved up for a burst.
-                inflow.pending = row;
-                inflow.blocked = true;
-            }
-        }
-        came
-    }
-
-    /// Which slots of a source have nothing within a share of the spacing.
-    pub(super) fn free_slots(
-        &self,
-        grains: &Grains<D>,
-        source: &Source<D>,
-        room: f64,
-    ) -> Vec<bool> {
-        let room = room * self.numerics.spacing;
-        let away = |x: &Vector<D>, y: &Vector<D>| norm(&self.periodic.difference(x, y));
-        let Some(first) = source.slots.first() else {
-            return Vec::new();
-        };
-        let farthest = |most: f64, slot: &Vector<D>| most.max(away(slot, first));
-        let reach = source.slots.iter().fold(0.0, farthest) + room;
-        let mut free = vec![true; source.slots.len()];
-        let present = grains.position.iter().zip(&grains.drained);
-        for (x, _) in present.filter(|(x, gone)| !**gone && away(x, first) < reach) {
-            for (slot, free) in source.slots.iter().zip(&mut free) {
-                *free &= away(x, slot) >= room;
-            }
-        }
-        free
-    }
-
-    /// Adds a particle at each free slot; their mass [kg].
-    pub(super) fn enter(&self, state: &mut State<D>, source: &Source<D>, free: &[bool]) -> f64 {
-        let mut entered = 0.0;
-        for ((slot, mass), free) in source.slots.iter().zip(&source.masses).zip(free) {
-            if !free {
-                continue;
-            }
-            let jitter: Vector<D> = std::array::from_fn(|_| state.random.symmetric());
-            let x = add(
-                slot,
-                &scale(self.numerics.jitter * self.numerics.spacing, &jitter),
-            );
-            let id = state.next_id;
-            state.next_id += 1;
-            state
-                .grains
-                .push(id, source.phase, x, source.velocity, *mass, source.density);
-            entered += mass;
-        }
-        entered
     }
 }

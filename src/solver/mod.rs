@@ -63,6 +63,7 @@ mod ring_tests;
 mod sample;
 mod seams;
 mod shift;
+mod sources;
 mod start;
 mod step;
 mod streams;
@@ -81,7 +82,7 @@ mod wall_row;
 mod wall_yield;
 
 pub(crate) use corners::PARALLEL;
-pub use devices::{Sink, Source};
+pub use devices::Sink;
 pub use error::SolverError;
 pub use grid::Periodic;
 pub use handed::Handed;
@@ -94,6 +95,7 @@ pub use paper_b::PaperB;
 pub use passes::{Pass, Passes};
 pub use plan::{OnMove, Plan, StepBound, StepInputs, SubStep};
 pub use rest::StaysAwake;
+pub use sources::{INSIDE, Source};
 pub use validity::Validity;
 
 use std::ops::Range;

@@ -10,7 +10,7 @@ use crate::boundary::Piston;
 use crate::state::State;
 
 use super::Solver;
-use super::devices::Source;
+use super::sources::Source;
 
 /// How much denser than at rest material may become before a face for the stream to go on [1]: twice what the sound speed is chosen for.
 const DENSER: f64 = 0.02;

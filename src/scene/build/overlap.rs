@@ -3,15 +3,11 @@
 use super::plates::with_plates;
 use crate::math::{Vector, dot, sub};
 use crate::scene::Scene;
-use crate::solver::{Plan, Scheme};
+use crate::solver::{INSIDE, Plan, Scheme};
 use crate::state::{CellGrid, State};
 
 /// What starts may be so near to a point of a wall or gate [spacing].
 const START: f64 = 0.3;
-/// A place of an inflow's row may: it stands half a spacing before its face and in from the face's ends, at least a quarter where that
-/// is short, and points half a spacing behind theirs. Within walls no place is further from the nearest than 0.71 in the plane, and 0.87
-/// in space, where a face of few places may be missed.
-const SLOT: f64 = 0.74;
 
 /// No particle may start inside a wall or gate, and none may come in there.
 ///
@@ -36,15 +32,41 @@ pub(super) fn check_overlap<const D: usize>(
             return Err("a particle starts at a position that is not a number".to_owned());
         }
     }
-    for (inflow, source) in scene.inflows.iter().zip(&plan.sources) {
+    check_inflows(scene, plan, &obstacles)
+}
+
+/// What comes in has room, stays in, and does not come where other material comes in.
+fn check_inflows<const D: usize>(
+    scene: &Scene,
+    plan: &Plan<D>,
+    obstacles: &Obstacles<D>,
+) -> Result<(), String> {
+    for (n, (inflow, source)) in scene.inflows.iter().zip(&plan.sources).enumerate() {
+        let name = &inflow.name;
         for x in &source.slots {
-            if let Some(group) = obstacles.holds(x, SLOT) {
+            let lets_in = || format!("inflow {name} lets in at {:?} m", &x[..]);
+            if let Some(group) = obstacles.holds(x, INSIDE) {
                 return Err(format!(
-                    "inflow {} lets in at {:?} m, inside {}: move its face out of there, to where material has room; on the \
-                     wall's own face it may lie",
-                    inflow.name,
-                    &x[..],
-                    name(scene, group),
+                    "{}, inside {}: move its face out of there, to where material has room; on the wall's own face it may lie",
+                    lets_in(),
+                    self::name(scene, group),
+                ));
+            }
+            if let Some(drain) = plan.sinks.iter().position(|sink| sink.holds(x)) {
+                return Err(format!(
+                    "{}, inside outflow {}, which would take it out at once: move one of the two",
+                    lets_in(),
+                    scene.outflows[drain].name,
+                ));
+            }
+        }
+        for (other, before) in scene.inflows.iter().zip(&plan.sources).take(n) {
+            let shared = source.shared_slots(before, &plan.periodic, plan.numerics.spacing);
+            if 2 * shared >= source.slots.len().min(before.slots.len()) {
+                return Err(format!(
+                    "inflow {name} lets in where inflow {} does, so that each keeps the other out: move one of their faces, or \
+                     join them to one inflow",
+                    other.name,
                 ));
             }
         }

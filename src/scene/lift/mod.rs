@@ -66,6 +66,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     let quality = raw.numerics.as_ref().and_then(|n| n.value.quality.as_ref());
     let quality = quality.map(|word| Quality::of_word(word.value));
     let run = lift.run();
+    lift.check_internal_steps(numerics.as_ref(), run);
     let schedules = lift.schedules(&inflows);
     let log = lift.log(run);
     let (dimension, domain) = (lift.dimension, lift.domain);

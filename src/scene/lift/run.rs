@@ -4,7 +4,11 @@ use super::Lift;
 use super::devices::up_to;
 use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint, SyncWord};
 use crate::scene::types::{Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule};
+use crate::solver::Numerics;
 use crate::units::{Quantity, quote};
+
+/// Most internal steps until the end: a thousand particles take weeks for them.
+const MOST_INTERNAL_STEPS: f64 = 1e9;
 
 impl Lift<'_> {
     pub(super) fn run(&mut self) -> Option<Run> {
@@ -36,6 +40,38 @@ impl Lift<'_> {
             step: step.value.0,
             until: until.value.0,
         })
+    }
+
+    /// Reports sound speeds that make a run endless, as slips of units do.
+    pub(super) fn check_internal_steps(&mut self, numerics: Option<&Numerics>, run: Option<Run>) {
+        let (Some(numerics), Some(run), Some(table)) = (numerics, run, &self.raw.numerics) else {
+            return;
+        };
+        let step = numerics.acoustic_step();
+        let steps = run.until / step;
+        if steps <= MOST_INTERNAL_STEPS {
+            return;
+        }
+        let speed = numerics.sound_speed;
+        let (sound, grains) = (&table.value.sound_speed, &table.value.grain_compressibility);
+        let (place, of) = match (sound, grains) {
+            (Some(given), _) => (given.place.clone(), "a sound speed"),
+            (None, Some(given)) => (given.place.clone(), "grains with a sound speed"),
+            (None, None) => (
+                table.place.child("expected_speed"),
+                "gravity, height and expected speed with a sound speed",
+            ),
+        };
+        self.problems.report(
+            &place,
+            format!(
+                "{of} of {speed:.3e} m/s, which makes internal steps of {step:.1e} s, {steps:.1e} of them until {} s",
+                run.until
+            ),
+            format!("at most {MOST_INTERNAL_STEPS:.0e} internal steps"),
+            "check units; ten times sqrt(g H) or the fastest speed is usual for the sound speed; else a coarser spacing or an \
+             earlier end",
+        );
     }
 
     pub(super) fn log(&mut self, run: Option<Run>) -> Option<LogSettings> {

@@ -13,8 +13,12 @@ pub(super) fn refuse_unknown<'k>(
     for (name, node) in entries {
         if !known.clone().any(|k| k == *name) {
             let keys: Vec<_> = known.clone().collect();
-            let remedy = match meant(name, &keys).or_else(|| nearest(name, known.clone())) {
+            let near = meant(name, &keys).or_else(|| nearest(name, known.clone()));
+            let remedy = match near {
                 Some(near) => format!("did you mean {near}? otherwise delete it"),
+                None if *name == STRESS => {
+                    "delete it, or give the file to `sandgate stress`".to_owned()
+                }
                 None => "delete it".to_owned(),
             };
             let found = format!("unknown key {}", quote(name));
@@ -22,6 +26,9 @@ pub(super) fn refuse_unknown<'k>(
         }
     }
 }
+
+/// Table of the cases that `sandgate stress` keeps: how they are driven.
+const STRESS: &str = "stress";
 
 /// What others call a key by a name that is not like ours: theirs, ours.
 const OTHER_NAMES: [(&str, &str); 1] = [("viscosity", "consistency")];

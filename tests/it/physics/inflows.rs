@@ -285,3 +285,59 @@ fn an_inflow_inside_a_wall_or_a_shut_gate_is_refused() {
         None
     );
 }
+
+/// What comes in stays in, and comes where nothing else does.
+#[test]
+fn an_inflow_inside_an_outflow_or_another_inflow_is_refused() {
+    let refused = |edits: &[(&str, &str)]| {
+        let error = Component::new(&channel(edits)).err();
+        error.map(|error| error.to_string())
+    };
+    let drain = "[outflows.sump]\nlower = [-0.1, 0.05]\nupper = [0.1, 0.1]\n[outflows.end]";
+    let error = refused(&[("[outflows.end]", drain)]).unwrap();
+    assert!(error.contains("inside outflow sump"), "{error}");
+    let second = |from: f64| {
+        format!(
+            "[inflows.second]\nmaterial = \"water\"\nfrom = [0, {from}]\nto = [0, {}]\nvelocity = [0.5, 0]\nrate = 1\n[outflows.end]",
+            from - 0.08
+        )
+    };
+    let error = refused(&[("[outflows.end]", &second(0.16))]).unwrap();
+    assert!(
+        error.contains("inflow second lets in where inflow feed does"),
+        "{error}"
+    );
+    assert_eq!(refused(&[("[outflows.end]", &second(0.2))]), None);
+}
+
+/// A plate that closes over a face, and a wall that moves over it, keep out what is due: nothing comes in inside them.
+#[test]
+fn a_gate_or_a_wall_that_comes_over_a_face_blocks_it() {
+    let gate = "[gates.g]\nfrom = [0.5, 0]\nto = [0.5, 0.2]\nthickness = 0.08\nmax_speed = 0.2\nstart = 1\n[outflows.end]";
+    let wall = "[walls.slab]\nbox = { lower = [0.7, 0.06], upper = [0.9, 0.26] }\nmotion = \"rigid\"\nvelocity = [-0.25, 0]\n[outflows.end]";
+    for over in [gate, wall] {
+        let mut unit = unit(&[
+            (
+                "from = [0, 0.12]\nto = [0, 0]",
+                "from = [0.58, 0.1]\nto = [0.5, 0.1]",
+            ),
+            (
+                "velocity = [0.8333333333, 0]\nrate = 99.99",
+                "velocity = [0, -0.5]\nrate = 10",
+            ),
+            (IN_WALL, TANK),
+            ("[outflows.end]", over),
+        ]);
+        unit.run_to(0.2);
+        if over == gate {
+            unit.set("gate.g.opening", 0.0);
+        }
+        unit.run_to(0.8);
+        let shut = unit.get("inflow.feed.mass");
+        unit.run_to(1.0);
+        println!("{shut} kg came in");
+        assert!(shut > 1.0, "{shut}");
+        assert_eq!(unit.get("inflow.feed.mass"), shut);
+        assert_eq!(unit.get("inflow.feed.blocked"), 1.0);
+    }
+}
