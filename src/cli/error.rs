@@ -24,8 +24,8 @@ Exit codes:
   5    a file could not be read or written, or a saved state does not fit
   6    the bus could not be opened or closed
   7    a check found a difference
-  130  run, validate, bench or stress stopped by Ctrl-C, SIGTERM or SIGHUP, after saving; serve and log replay, which
-       have no end of their own, end so with 0";
+  130  run, validate, bench precision or stress stopped by Ctrl-C, SIGTERM or SIGHUP, after saving; serve and log
+       replay, which have no end of their own, end so with 0; other benchmarks keep nothing and end by the signal";
 
 /// Errors of the program.
 #[derive(Debug, thiserror::Error)]

@@ -18,6 +18,13 @@ impl Component {
         !same_bits(&self.life.parameters, &self.built)
     }
 
+    /// Fixed parameters of the scene that are not what its text says, with their values in SI units.
+    pub fn changed_parameters(&self) -> impl Iterator<Item = (&str, f64)> {
+        let all = self.base.adjustables.iter().zip(&self.life.parameters);
+        let changed = all.filter(|(a, value)| a.start.to_bits() != value.to_bits());
+        changed.map(|(a, value)| (a.name.as_str(), *value))
+    }
+
     /// Builds the engine anew if fixed parameters were set since it was built, and samples the outputs of the start.
     ///
     /// # Errors

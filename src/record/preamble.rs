@@ -29,7 +29,9 @@ pub(super) fn write_preamble(
         ("communication_step", scene.run.step.to_string()),
         ("deterministic", options.deterministic.to_string()),
     ];
-    file.metadata("run", owned(run));
+    let mut run = owned(run);
+    run.extend(in_use(component));
+    file.metadata("run", run);
     let begin = [
         ("epoch", place.map_or(0, |p| p.epoch).to_string()),
         ("number", place.map_or(0, |p| p.number).to_string()),
@@ -52,6 +54,19 @@ pub(super) fn write_preamble(
         file.attachment("start.state", "application/octet-stream", time, &state);
     }
     Ok(())
+}
+
+/// The particle spacing, and the parameters that are not the scene's, as they are now: those of an FMU may be set after its log began,
+/// so that they stand at a log's end, too.
+pub(super) fn in_use(component: &Component) -> BTreeMap<String, String> {
+    let spacing = component.scene().numerics.spacing.to_string();
+    let mut all = owned([("spacing", spacing)]);
+    let changed = component.changed_parameters();
+    let changed: Vec<_> = changed.map(|(n, v)| format!("{n} = {v}")).collect();
+    if !changed.is_empty() {
+        all.insert("parameters".to_owned(), changed.join(", "));
+    }
+    all
 }
 
 /// Whether the component is past its start, so that the scene alone does not say what it is.

@@ -249,7 +249,7 @@ impl Gathered {
                 json!({"topic": topic, "messages": c.messages, "schema": c.schema})
             }).collect::<Vec<_>>(),
             "planar": scene.is_none_or(|s| s.dimension.axes() == 2),
-            "spacing": scene.map_or(0.0, |s| s.numerics.spacing),
+            "spacing": self.spacing(),
             "materials": scene.map_or_else(Vec::new, |s| {
                 s.materials.iter().map(|m| m.name.clone()).collect()
             }),
@@ -261,6 +261,14 @@ impl Gathered {
             },
             "view_note": self.view_note(),
         })
+    }
+
+    /// Particle spacing [m]: what the log's end or beginning says was in use, else the scene's; 0 if none says.
+    fn spacing(&self) -> f64 {
+        let told = |record: &str| self.survey.metadata(record)?.get("spacing")?.parse().ok();
+        let of_scene = || self.scene.as_ref().map(|s| s.numerics.spacing);
+        let spacing = told("end").or_else(|| told("run")).or_else(of_scene);
+        spacing.unwrap_or(0.0)
     }
 
     fn view_note(&self) -> String {

@@ -144,3 +144,31 @@ fn the_page_of_a_run_that_went_back_and_forth_is_that_of_one_that_did_not() {
         assert_eq!(straight[part], back[part], "{part}");
     }
 }
+
+/// An importer sets parameters once its log has begun; particles are drawn as large as they are, and the page says what was set.
+#[test]
+fn parameters_that_are_not_the_scenes_are_told_and_drawn() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let log = folder.path().join("run.mcap");
+    let text = include_str!("../../tests/scenes/small_silo.toml");
+    let scene = scene::parse("small_silo.toml", text).unwrap();
+    let mut component = Component::new(&scene).unwrap();
+    let options = RecordOptions::of(&component);
+    let mut recorder = Recorder::create(&log, &component, options).unwrap();
+    let scale = component.variables().by_name("solver.resolution_scale");
+    let scale = scale.unwrap().reference;
+    component.set(&[scale], &[0.5]).unwrap();
+    component.initialize(0.0, None).unwrap();
+    recorder
+        .record_initialization(&component, 0.0, None, "test")
+        .unwrap();
+    let report = component.do_step(0.0, 0.005).unwrap();
+    recorder
+        .record_step(&component, &report, 0.0, 0.005, "test")
+        .unwrap();
+    recorder.finish(&component, "finished").unwrap();
+    let data = Gathered::read(&log, 1_000_000).unwrap().json();
+    assert_eq!(data["spacing"], 2.0 * scene.numerics.spacing);
+    assert_eq!(data["end"]["parameters"], "solver.resolution_scale = 0.5");
+    assert_eq!(data["run"]["parameters"], serde_json::Value::Null);
+}

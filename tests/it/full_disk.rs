@@ -83,6 +83,13 @@ fn judge(output: &Output, out: &Path, required: bool, fault: &str) {
         false => "error: cannot write",
     };
     assert!(said.contains(other), "{said}");
+    // The summary does not say for ever that the run goes on, and the table has whole rows.
+    let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["status"], "failed", "{said}");
+    assert!(summary["error"].is_string(), "{said}");
+    let rows = std::fs::read_to_string(out.join("gauges.csv")).unwrap();
+    assert!(rows.ends_with('\n'), "{said}");
     // Up to its last chunk the log is whole.
     let check = check_mass(&part).unwrap();
     assert_eq!(check.wrong, None);

@@ -67,6 +67,10 @@ fn as_text(survey: &Survey) -> String {
         line("run", run_line(&run));
         let hash = get(&run, "scene_hash");
         line("scene", format!("{} (sha256 {hash})", get(&run, "title")));
+        let changed = of("end").remove("parameters");
+        if let Some(changed) = changed.or_else(|| run.get("parameters").cloned()) {
+            line("parameters", format!("not the scene's: {changed}"));
+        }
     }
     if !segment.is_empty() {
         let (epoch, number) = (get(&segment, "epoch"), get(&segment, "number"));

@@ -6,7 +6,7 @@
 //!
 //! A folder is locked from then on to the end of the run (`lock`): another run is refused there, also with `--force`.
 
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
@@ -141,6 +141,20 @@ impl Folder {
             source,
             remedy: "make room or choose another folder with --out",
         })
+    }
+
+    /// Writes over a file in its place, where a new one has no room; one that is shorter or not there stays as it is.
+    pub(super) fn write_over(&self, name: &str, bytes: &[u8]) {
+        // What is in the way has been told: this only makes the best of it.
+        let write = || {
+            let mut file = std::fs::File::options().write(true).open(self.file(name))?;
+            if file.metadata()?.len() >= bytes.len() as u64 {
+                file.write_all(bytes)?;
+                file.set_len(bytes.len() as u64)?;
+            }
+            Ok(())
+        };
+        let _: std::io::Result<()> = write();
     }
 }
 

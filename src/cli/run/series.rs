@@ -201,6 +201,19 @@ impl Series {
         self.file.flush().map_err(|e| cannot_write(&self.path, e))
     }
 
+    /// Takes a row off the file's end of which the disk took only a part; this needs no room.
+    pub(super) fn end_with_whole_row(&self) {
+        if self.file.begun() == 0 {
+            return;
+        }
+        // That rows are missing is told already; readers still skip a last one that was cut.
+        let cut = || {
+            let file = File::options().write(true).open(&self.path)?;
+            file.set_len(file.metadata()?.len() - self.file.begun())
+        };
+        let _: std::io::Result<()> = cut();
+    }
+
     /// The column of a scalar; none of an array.
     pub(super) fn column(&self, reference: ValueReference) -> Option<&Column> {
         let place = place(&self.references, reference)?;

@@ -297,6 +297,22 @@ impl Session {
         self.folder.replace("summary.json", text.as_bytes())
     }
 
+    /// The last summary. Where there is no room for it the one that says "running" is written over, without the variables.
+    fn write_last_summary(&self, status: &str, error: Option<&str>) -> Result<(), CliError> {
+        let written = self.write_summary(status, error);
+        if written.is_err() {
+            let text = summary::json(self, status, error)?;
+            let short = serde_json::from_str(&text).map(|mut all: serde_json::Value| {
+                all["variables"] = serde_json::json!({});
+                all.to_string()
+            });
+            if let Ok(short) = short {
+                self.folder.write_over("summary.json", short.as_bytes());
+            }
+        }
+        written
+    }
+
     /// Finishes every file, prints the table and says how to go on. A file that cannot be written does not keep the others
     /// from being written, and does not hide what ended the run: the first error is the run's, the others are told.
     ///
@@ -311,13 +327,14 @@ impl Session {
             finished => outcome.fails_by(finished),
         }
         let before_failure = self.last_checkpoint(&mut outcome);
+        self.series.end_with_whole_row();
         let title = &self.component.scene().title;
         match plot::svg(title, &self.series) {
             Ok(svg) => outcome.fails_by(self.folder.replace("gauges.svg", svg.as_bytes())),
             Err(error) => tell!("warning: gauges.svg could not be drawn: {error}"),
         }
         let (status, error) = outcome.words();
-        let summary = self.write_summary(status, error.as_deref());
+        let summary = self.write_last_summary(status, error.as_deref());
         outcome.fails_by(summary);
         let said = say(&summary::table(&self, outcome.words().0));
         outcome.fails_by(said);

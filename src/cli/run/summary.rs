@@ -29,6 +29,11 @@ pub(super) fn json(
     let (ledger, figures) = (component.ledger(), component.statistics());
     let parts = parts(session);
     let total = |key: &str| number(parts.iter().filter_map(|part| part[key].as_f64()).sum());
+    // Of a state that an FMU or a client saved: what it had set.
+    let parameters: Map<String, Value> = component
+        .changed_parameters()
+        .map(|(name, value)| (name.to_owned(), number(value)))
+        .collect();
     let summary = json!({
         "made_by": MADE_BY,
         "version": env!("CARGO_PKG_VERSION"),
@@ -40,6 +45,7 @@ pub(super) fn json(
         "scene_sha256": hex(&scene.fingerprint()),
         "quality": scene.quality.name(),
         "spacing": number(scene.numerics.spacing),
+        "parameters": parameters,
         "time": number(component.time()),
         "until": number(session.plan.until),
         "communication_step": number(session.plan.step),

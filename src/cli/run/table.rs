@@ -11,6 +11,8 @@ pub(super) struct Patient {
     sink: Box<dyn Write>,
     /// Bytes that are not in the file yet.
     waiting: Vec<u8>,
+    /// Bytes in the file of a line whose rest is not.
+    begun: u64,
 }
 
 impl Patient {
@@ -18,6 +20,7 @@ impl Patient {
         Self {
             sink: Box::new(sink),
             waiting: Vec::new(),
+            begun: 0,
         }
     }
 
@@ -31,6 +34,11 @@ impl Patient {
         self.waiting.len()
     }
 
+    /// Bytes in the file of a line whose rest is not.
+    pub(super) fn begun(&self) -> u64 {
+        self.begun
+    }
+
     /// Writes what waits, as far as there is room; a line that was cut is gone on with.
     pub(super) fn flush(&mut self) -> std::io::Result<()> {
         let (mut written, mut result) = (0, Ok(()));
@@ -42,6 +50,11 @@ impl Patient {
                 Err(error) => result = Err(error),
             }
         }
+        let (done, end) = (&self.waiting[..written], |byte: &u8| *byte == b'\n');
+        self.begun = match done.iter().rposition(end) {
+            Some(last) => (written - 1 - last) as u64,
+            None => self.begun + written as u64,
+        };
         self.waiting.drain(..written);
         result
     }
@@ -157,10 +170,12 @@ mod tests {
         file.push("0.5,2.5");
         assert!(file.flush().is_err());
         assert_eq!(disk.0.lock().unwrap().0, b"0.0,1.5");
+        assert_eq!(file.begun(), 7);
         disk.0.lock().unwrap().1 = 100;
         file.flush().unwrap();
         file.flush().unwrap();
         assert_eq!(disk.0.lock().unwrap().0, b"0.0,1.5\n0.5,2.5\n");
+        assert_eq!(file.begun(), 0);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::component::Component;
 use crate::record::error::{Failure, RecordError};
 use crate::record::options::{Finished, RecordOptions};
 use crate::record::place::Place;
-use crate::record::preamble::owned;
+use crate::record::preamble::{in_use, owned};
 use crate::wire::messages::AppliedEvent;
 use std::collections::BTreeMap;
 
@@ -165,6 +165,7 @@ impl Recorder {
         self.remember(component);
         let mode = ("mode".to_owned(), format!("{:?}", component.mode()));
         let mut state = BTreeMap::from([mode]);
+        state.extend(in_use(component));
         if !component.step_failed() {
             state.insert("state_hash".to_owned(), component.state_hash());
         }
