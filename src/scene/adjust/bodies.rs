@@ -65,7 +65,11 @@ pub(super) fn list(
                 };
                 format!("{letter} of the {end} corner of body {name}{level}")
             };
-            let up = space.up[axis];
+            // What repeats itself along an axis is not filled along it.
+            let up = match space.domain.periodic[axis] {
+                true => 0.0,
+                false => space.up[axis],
+            };
             let (key, lowest) = (format!("lower_{letter}"), text("lower", up < 0.0));
             add(&key, lowest, BodyKey::Lower(axis), low[axis], range);
             let (key, highest) = (format!("upper_{letter}"), text("upper", up > 0.0));
