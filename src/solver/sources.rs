@@ -4,7 +4,7 @@ use crate::boundary::{Mover, Piston, Plate};
 use crate::math::{Vector, add, dot, norm, scale};
 use crate::state::{Grains, State};
 
-use super::{Periodic, Scheme, Solver};
+use super::{Scheme, Solver};
 
 /// Distance from a slot of an inflow within which nothing may be when a particle enters there, over the spacing.
 const ROOM: f64 = 0.6;
@@ -39,14 +39,6 @@ impl<const D: usize> Source<D> {
     #[must_use]
     pub fn row_mass(&self) -> f64 {
         self.masses.iter().fold(0.0, |sum, m| sum + m)
-    }
-
-    /// How many of its slots have no room beside those of another source.
-    #[must_use]
-    pub fn shared_slots(&self, other: &Self, periodic: &Periodic<D>, spacing: f64) -> usize {
-        let near = |x: &Vector<D>, y: &Vector<D>| norm(&periodic.difference(x, y)) < ROOM * spacing;
-        let is_taken = |x: &&Vector<D>| other.slots.iter().any(|y| near(x, y));
-        self.slots.iter().filter(is_taken).count()
     }
 }
 

@@ -35,13 +35,13 @@ pub(super) fn check_overlap<const D: usize>(
     check_inflows(scene, plan, &obstacles)
 }
 
-/// What comes in has room, stays in, and does not come where other material comes in.
+/// What comes in has room, and stays in.
 fn check_inflows<const D: usize>(
     scene: &Scene,
     plan: &Plan<D>,
     obstacles: &Obstacles<D>,
 ) -> Result<(), String> {
-    for (n, (inflow, source)) in scene.inflows.iter().zip(&plan.sources).enumerate() {
+    for (inflow, source) in scene.inflows.iter().zip(&plan.sources) {
         let name = &inflow.name;
         for x in &source.slots {
             let lets_in = || format!("inflow {name} lets in at {:?} m", &x[..]);
@@ -57,16 +57,6 @@ fn check_inflows<const D: usize>(
                     "{}, inside outflow {}, which would take it out at once: move one of the two",
                     lets_in(),
                     scene.outflows[drain].name,
-                ));
-            }
-        }
-        for (other, before) in scene.inflows.iter().zip(&plan.sources).take(n) {
-            let shared = source.shared_slots(before, &plan.periodic, plan.numerics.spacing);
-            if 2 * shared >= source.slots.len().min(before.slots.len()) {
-                return Err(format!(
-                    "inflow {name} lets in where inflow {} does, so that each keeps the other out: move one of their faces, or \
-                     join them to one inflow",
-                    other.name,
                 ));
             }
         }
