@@ -206,6 +206,11 @@ def ensemble(client, archive, store, on_slice=lambda done: None):
             steps = sum(map(len, found.values()))
             print(f"{steps}/{total} steps, {len(running)} members at work, {time.monotonic() - began:.1f} s", flush=True)
             on_slice(slices)
+        elif future.status not in ("error", "cancelled"):
+            # The worker ended before it handed over what it had computed: the scheduler has the same task computed again.
+            running[future.key] = member
+            queue.add(future)
+            continue
         else:
             tries[number] += 1
             print(f"member {number} failed at step {len(found[number])}: {future.exception()}", flush=True)
