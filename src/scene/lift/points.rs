@@ -109,7 +109,7 @@ impl Lift<'_> {
         }
     }
 
-    /// A box with lower below upper on every axis and at least `least` wide.
+    /// Corners of a box, lower below upper on every axis; reports the first axis on which they are not.
     pub(super) fn corners(
         &mut self,
         lower: Option<&At<Coordinates<Length>>>,
