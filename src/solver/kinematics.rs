@@ -200,10 +200,6 @@ impl<const D: usize> Solver<D> {
             gradient[0][0] += self.axis_rate(i, v);
             kinematics.divergence += hoop + self.rings[i].closing;
             pair_shear2 += hoop * hoop;
-            if self.rings[i].axis != 0.0 {
-                // Its image comes as fast.
-                kinematics.relative_speed = kinematics.relative_speed.max(2.0 * v[0].abs());
-            }
         }
         let plain = self.geometry.strain_deviator(&gradient, hoop);
         kinematics.shear = self.geometry.shear_rate(&plain);

@@ -3,10 +3,10 @@
 //!
 //! A particle is a ring of radius r, of length w = 2 pi r and volume V = m/rho. Pair coefficients are
 //! g_ij = V_j (1/w_i + 1/w_j)/2 grad_i W_ij: then V_i g_ij = -V_j g_ji, and all sums over pairs read as in the plane.
-//! Rings do not meet their images across the axis; what is missing there is local, a share `axis` of v_r, and hoop
-//! strain is v_r `hoop`.
+//! Rings do not meet their images across the axis, but where they are shifted; what is missing there is local, a share `axis` of v_r,
+//! and hoop strain is v_r `hoop`.
 
-use crate::math::{Geometry, Tensor, Vector, dot, norm, scale, sub, trace};
+use crate::math::{Geometry, Tensor, Vector, add_outer, dot, norm, scale, sub, trace};
 use crate::state::State;
 
 use super::Solver;
@@ -112,37 +112,44 @@ impl<const D: usize> Solver<D> {
         self.volume[j] * 0.5 / std::f64::consts::TAU * hoops
     }
 
-    /// grad C of rings in the section [1/m]: pair coefficients are longer the further out a neighbour is, and would push all to the axis.
-    /// Without images across the axis: what sees it counts as beside a surface.
-    pub(super) fn slope_of_sections(
+    /// grad C [1/m] and M [1] of ring i in the section: pair coefficients are longer the further out a neighbour is, and would push all
+    /// to the axis. Beyond the axis lies the section's image.
+    pub(super) fn section_sums(
         &self,
         state: &State<D>,
         block: &Block<D>,
         (i, row): (usize, usize),
-    ) -> Vector<D> {
+    ) -> (Vector<D>, Tensor<D>) {
         let place = &state.grains.position;
-        let mut slope = [0.0; D];
-        let mut add = |other: &Vector<D>, area: f64| {
-            let x = self.periodic.difference(&place[i], other);
-            let r = norm(&x);
-            if r > 0.0 && r < self.kernel.support() {
+        let support = self.kernel.support();
+        let (mut slope, mut moment) = ([0.0; D], [[0.0; D]; D]);
+        let mut add = |x: &Vector<D>, area: f64| {
+            let r = norm(x);
+            if r > 0.0 && r < support {
                 let weight = area * self.kernel.f(r);
                 for k in 0..D {
                     slope[k] += weight * x[k];
                 }
+                add_outer(&mut moment, -weight, x, x);
             }
         };
-        for &j in block.row(row) {
-            let j = j as usize;
-            let length = std::f64::consts::TAU / self.rings[j].hoop;
-            add(&place[j], self.volume[j] / length);
+        let mut add_with_image = |other: &Vector<D>, area: f64| {
+            let mut x = self.periodic.difference(&place[i], other);
+            add(&x, area);
+            x[0] = place[i][0] + other[0];
+            add(&x, area);
+        };
+        let area = |j: usize| self.volume[j] * self.rings[j].hoop / std::f64::consts::TAU;
+        add_with_image(&place[i], area(i));
+        for &j in block.row(row).iter().filter(|&&j| j as usize != i) {
+            add_with_image(&place[j as usize], area(j as usize));
         }
         for &w in block.wall_row(row) {
             let w = w as usize;
             let area = self.lattice_cell() * self.walls.weight[w];
-            add(&self.walls.position[w], area);
+            add_with_image(&self.walls.position[w], area);
         }
-        slope
+        (slope, moment)
     }
 
     /// (w_w - w_i)/(w_w + w_i): the part of ring i's g of a wall point that it has because they are not of one length [1]; 0 unless

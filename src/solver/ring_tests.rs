@@ -204,3 +204,32 @@ fn a_ring_in_the_corner_of_axis_and_floor_is_held() {
     assert!(bulk[0] < -0.05 && (corner[0] / bulk[0] - 1.0).abs() < 0.1);
     assert!(corner[1].abs() < 0.01);
 }
+
+/// Shifts of rings that stand evenly are small against the speeds that make them, also beside the axis; a ring that left its place
+/// there goes back.
+#[test]
+fn shifting_sees_what_is_across_the_axis() {
+    let shift = |out: f64| {
+        let rate = 0.3;
+        let (mut solver, mut state) = column(0.0, false, |x| [rate * x[0], -2.0 * rate * x[1]]);
+        let mid = (HEIGHT / 2 * RADIUS) as u64;
+        let place = |s: &State<2>| s.grains.id.iter().position(|id| *id == mid).unwrap();
+        let k = place(&state);
+        state.grains.position[k][0] += out * DP;
+        solver.start(&mut state);
+        solver.materials[0] = Material::fluid(1000.0, crate::material::Viscous::NONE, 0.0);
+        solver.numerics.shifting = 1.0;
+        solver.find_shift(&state, 1e-4);
+        let speed = rate * solver.kernel.support();
+        let size = |i: usize| dot(&solver.shift[i], &solver.shift[i]).sqrt() / speed;
+        let shifted = solver.shift.iter().filter(|du| du[1] != 0.0).count();
+        (errors(&state, size), solver.shift[place(&state)], shifted)
+    };
+    let (even, _, shifted) = shift(0.0);
+    println!("even {even:?}, {shifted} are shifted");
+    assert!(shifted > RADIUS * HEIGHT / 4);
+    assert!(even.0 < 0.02 && even.1 < 0.02, "{even:?}");
+    let (_, back, _) = shift(0.2);
+    println!("back {back:?}");
+    assert!(back[0] < -0.1 * 0.3 * DP, "{back:?}");
+}

@@ -4,7 +4,12 @@
 //! Symbols: R = 2 h, U_i largest relative speed among the neighbours (of i, not of the whole domain: a fast jet must not stir a
 //! bed at rest), C_i = sum_j V_j W_ij, lambda_i smallest eigenvalue of the moment matrix M (E2), n_i its direction:
 //!
-//!   du_i = -U_i/2 (R/dp)^3 R grad C_i,  at most U_i/2 R/(2 dp)                                      ([B] 17, 18)
+//!   du_i = -k_i grad C_i,   k_i = U_i/2 (R/dp)^3 R,   at most U_i/2 R/(2 dp)                        ([B] 17, 18)
+//!
+//! grad C changes by V |F(0)| times the way of a particle among neighbours that stay, and twice that where they go the other way:
+//! what goes further than to where grad C is 0 comes back, and further each time. So
+//!
+//!   k_i <= 1/(2 V |F(0)| dt)                                                                         (SH3)
 //!
 //! At a flat surface lambda is 0.5 in the first row, 0.8 in the second and 1 inside. A particle that is at a surface or has a
 //! neighbour there is not shifted: [B] 19 and 20 leave out du's part along grad lambda, but with the rest, too, surfaces feed
@@ -37,8 +42,9 @@ impl<const D: usize> Solver<D> {
         self.numerics.shifting > 0.0 && self.materials.iter().any(|m| m.is_fluid())
     }
 
-    /// Fills `self.shift` from the pair coefficients of the state's positions; before `sweep_pressure` changes them.
-    pub(super) fn find_shift(&mut self, state: &State<D>) {
+    /// Fills `self.shift` for a step of dt [s] from the pair coefficients of the state's positions; before `sweep_pressure` changes
+    /// them.
+    pub(super) fn find_shift(&mut self, state: &State<D>, dt: f64) {
         if !self.shifts() {
             return;
         }
@@ -51,6 +57,8 @@ impl<const D: usize> Solver<D> {
                     *o = self.openness(state, block, row, first + row);
                 }
             });
+        let restoring = self.numerics.spacing.powi(D as i32) * self.kernel.f(0.0).abs();
+        let most = 0.5 / (restoring * dt);
         let mut shift = std::mem::take(&mut self.shift);
         shift.resize(n, [0.0; D]);
         self.workers
@@ -59,7 +67,8 @@ impl<const D: usize> Solver<D> {
                 for (row, o) in out.iter_mut().enumerate() {
                     let wall = walls.next_if(|w| w.row as usize == row);
                     let slope = wall.map_or([0.0; D], |w| w.s);
-                    *o = self.shift_velocity(state, &open, (block, row, first + row), slope);
+                    let own = (block, row, first + row);
+                    *o = self.shift_velocity(state, &open, own, (slope, most));
                 }
             });
         self.openness = open;
@@ -126,6 +135,9 @@ impl<const D: usize> Solver<D> {
 
     /// lambda of row i [1].
     pub(super) fn openness(&self, state: &State<D>, block: &Block<D>, row: usize, i: usize) -> f64 {
+        if self.geometry.is_axisymmetric() {
+            return smallest(&self.section_sums(state, block, (i, row)).1).0;
+        }
         let mut moment = [[0.0; D]; D];
         // -x (x) g = g (x) g/(V |F|), and V |F| = k/2.
         block.for_each_pair(row, |_, k, g| add_outer(&mut moment, 2.0 / k, &g, &g));
@@ -136,13 +148,13 @@ impl<const D: usize> Solver<D> {
         smallest(&moment).0
     }
 
-    /// du of row i [m/s]; `slope` is the walls' part of grad C.
+    /// du of row i [m/s]; `slope` is the walls' part of grad C, `most` what k is at most [m^2/s].
     fn shift_velocity(
         &self,
         state: &State<D>,
         open: &[f64],
         (block, row, i): (&Block<D>, usize, usize),
-        mut slope: Vector<D>,
+        (mut slope, most): (Vector<D>, f64),
     ) -> Vector<D> {
         let speed = self.kinematics[i].relative_speed;
         let own = open[i];
@@ -158,18 +170,18 @@ impl<const D: usize> Solver<D> {
             }
         });
         if self.geometry.is_axisymmetric() {
-            slope = self.slope_of_sections(state, block, (i, row));
+            slope = self.section_sums(state, block, (i, row)).0;
         }
         if least < SURFACE {
             return [0.0; D];
         }
         let reach = self.kernel.support();
         let ratio = reach / self.numerics.spacing;
-        let size = ratio.powi(3) * reach * norm(&slope);
-        let most = 0.5 * ratio;
-        let cut = if size > most { most / size } else { 1.0 };
-        let factor = -0.5 * self.numerics.shifting * speed * cut * ratio.powi(3) * reach;
-        scale(factor, &slope)
+        let half_speed = 0.5 * self.numerics.shifting * speed;
+        let k = (half_speed * ratio.powi(3) * reach).min(most);
+        let (size, largest) = (k * norm(&slope), half_speed * 0.5 * ratio);
+        let cut = if size > largest { largest / size } else { 1.0 };
+        scale(-k * cut, &slope)
     }
 
     fn add_wall_moment(&self, x: &Vector<D>, i: usize, near: &[u32], moment: &mut Tensor<D>) {

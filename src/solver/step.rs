@@ -41,7 +41,7 @@ impl<const D: usize> Solver<D> {
     ) -> Result<SubStep, SolverError> {
         // Forces tell when a scene may sleep, whoever reads them.
         let was_quiet = self.stays_awake.is_none() && self.is_quiet(&state.grains);
-        self.find_shift(state);
+        self.find_shift(state, dt);
         let acoustic_dt = self.step_sound(state, dt);
         let iterations = self.solve_viscous(state, dt)?;
         let impulse = state.impulse.clone();

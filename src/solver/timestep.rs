@@ -12,11 +12,18 @@ const SLOW: f64 = 0.03;
 
 impl<const D: usize> Solver<D> {
     /// Neighbours and walls move at most 0.2 h against each other in a step, which is one acoustic step where they are fast.
-    fn motion_bound(&self) -> f64 {
-        let rows = &self.kinematics;
-        let [v] = self
-            .workers
-            .largest(rows.len(), |i| [rows[i].relative_speed]);
+    fn motion_bound(&self, state: &State<D>) -> f64 {
+        let (rows, rings) = (&self.kinematics, &self.rings);
+        let [v] = self.workers.largest(rows.len(), |i| {
+            let own = rows[i].relative_speed;
+            // The image across the axis comes as fast.
+            let meets_image = rings.get(i).is_some_and(|ring| ring.axis != 0.0);
+            [if meets_image {
+                own.max(2.0 * state.grains.velocity[i][0].abs())
+            } else {
+                own
+            }]
+        });
         if v > 0.0 {
             let bound = 0.2 * self.kernel.h / v;
             if v > SLOW * self.numerics.sound_speed {
@@ -49,7 +56,7 @@ impl<const D: usize> Solver<D> {
     ) -> Result<(f64, StepBound), SolverError> {
         let time = state.time;
         let mut best = (self.numerics.longest_step(), StepBound::Acoustic);
-        let motion = self.motion_bound().min(self.gate_bound(state, wanted));
+        let motion = self.motion_bound(state).min(self.gate_bound(state, wanted));
         if motion < best.0 {
             // Fast motion asks for one acoustic step, and that is then what bounds.
             let acoustic = motion == self.numerics.acoustic_step();
