@@ -48,6 +48,11 @@ impl Packing {
         }
     }
 
+    /// sum_j V_j |F| of a lattice [1/m^2].
+    pub(super) fn lattice_sum(&self) -> f64 {
+        self.lattice_sum
+    }
+
     /// Share of a particle's neighbourhood that is empty, negative where it is filled more than once [1]; 0 within what uneven
     /// places make of it.
     pub(super) fn looseness<const D: usize>(&self, sums: &Row<D>) -> f64 {

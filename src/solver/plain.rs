@@ -113,7 +113,7 @@ impl<const D: usize> Solver<D> {
         out: &mut [Prediction<D>],
     ) {
         let numerics = &self.numerics;
-        let strength = 2.0 * numerics.density_diffusion * self.kernel.h / numerics.sound_speed;
+        let strength = self.diffusion_strength(numerics.sound_speed, dt);
         for (i, o) in out.iter_mut().enumerate() {
             *o = Prediction::default();
             let mut force = [0.0; D];

@@ -42,6 +42,16 @@ impl<const D: usize> Default for Prediction<D> {
 }
 
 impl<const D: usize> Solver<D> {
+    /// 2 delta h/c of (E8) in acoustic steps of dt [s]: no more than evens a particle out with its neighbours, of whose pressures all are of
+    /// the step's start. With more each goes past the others, and further every step.
+    pub(super) fn diffusion_strength(&self, sound_speed: f64, dt: f64) -> f64 {
+        let per_sound = self.kernel.h / sound_speed;
+        let wanted = 2.0 * self.numerics.density_diffusion * per_sound;
+        let whole = f64::from(self.acoustic.count()) * dt;
+        let most = 1.0 / (sound_speed * sound_speed * whole * self.packing.lattice_sum());
+        wanted.min(most)
+    }
+
     /// Fills `self.prediction`, and multiplies the pairs' coefficients by their viscosity.
     pub(super) fn sweep_pressure(&mut self, state: &State<D>, dt: f64) {
         let n = state.grains.len();

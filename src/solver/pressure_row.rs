@@ -338,7 +338,7 @@ impl<'s, L: Lanes, const D: usize, const PLAIN: bool> PressureRow<'s, L, D, PLAI
                 resistance[a][b] = self.resistance[a.min(b)][a.max(b)].sum();
             }
         }
-        let strength = 2.0 * solver.numerics.density_diffusion * solver.kernel.h / self.c0;
+        let strength = solver.diffusion_strength(self.c0, dt);
         Prediction {
             velocity,
             diffusion: strength * self.diffusion.sum(),

@@ -53,3 +53,21 @@ fn a_column_runs_out_as_measured_and_then_stands_still() {
         "run-out {mean}, measured {measured}"
     );
 }
+
+/// All the density diffusion that a scene can ask for costs no friction: particles were taken past their neighbours' pressure, and the
+/// column flew apart.
+#[test]
+fn a_column_with_all_the_density_diffusion_stands_as_high() {
+    let with_diffusion = "spacing = \"3.02 mm\"\ndensity_diffusion = 1";
+    let scene = case(
+        "column_collapse",
+        &[("spacing = \"3.02 mm\"", with_diffusion)],
+    );
+    let mut unit = Unit::new(&scene);
+    unit.run_to(0.6);
+    let height = unit.get("gauge.depth_centre.depth");
+    assert!(
+        (height / H0 - 1.0).abs() < 0.05,
+        "centre {height} m of {H0} m"
+    );
+}
