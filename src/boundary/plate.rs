@@ -214,21 +214,23 @@ impl<const D: usize> Plate<D> {
         self.thickness
     }
 
-    /// Number of pieces of the leading edge, each about a spacing long; 1 in the plane, where it is a point.
+    /// Number of pieces of the leading edge, each about a spacing long: along it in space, from face to face in the plane.
     #[must_use]
     pub fn pieces(&self, spacing: f64) -> usize {
-        self.across
-            .map_or(1, |(_, width)| (width / spacing).round().max(1.0) as usize)
+        let length = self.across.map_or(self.thickness, |(_, width)| width);
+        (length / spacing).round().max(1.0) as usize
     }
 
     /// The piece of the leading edge that `x` stands before.
     #[must_use]
     pub fn piece_of(&self, x: &Vector<D>, spacing: f64) -> usize {
         let pieces = self.pieces(spacing);
-        self.across.map_or(0, |(u, width)| {
-            let share = dot(&sub(x, &self.from), &u) / width;
-            ((share * pieces as f64).max(0.0) as usize).min(pieces - 1)
-        })
+        let d = sub(x, &self.from);
+        let share = self.across.map_or_else(
+            || -dot(&d, &self.normal) / self.thickness,
+            |(u, width)| dot(&d, &u) / width,
+        );
+        ((share * pieces as f64).max(0.0) as usize).min(pieces - 1)
     }
 
     /// Unit normal from the nearest point of the plate's surface to `x`, at an opening.

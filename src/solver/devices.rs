@@ -97,7 +97,7 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// Whether grains stand against the leading edge of a plate that wants to close, along a share [`HELD`] of it in space: fewer are
+    /// Whether grains stand against the leading edge of a plate that wants to close, along a share [`HELD`] of it: fewer are
     /// pushed aside, and so are fluids that flow, of which one drop at the lip held a gate as long as it stood there.
     fn is_blocked(&self, state: &State<D>, gate: usize) -> bool {
         let (plate, opening) = (&self.plates[gate], state.gates[gate].opening);

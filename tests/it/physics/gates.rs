@@ -237,3 +237,46 @@ until = "2.4 s"
     }
     assert!(unit.get("gate.main.actual_opening") < 0.25);
 }
+
+/// A gate flush with the lip of a steep hopper has the stream along its edge all the time: single grains of it held it, by up to twice the
+/// time of its way.
+#[test]
+fn a_stream_along_the_lip_holds_no_gate() {
+    let text = r#"
+name = "hopper"
+[domain]
+lower = [-0.2, -0.3]
+upper = [0.2, 0.4]
+[numerics]
+spacing = "6 mm"
+seed = 2
+expected_speed = 1.5
+[materials.beads]
+law = "mu_i"
+preset = "glass_beads"
+[bodies.fill]
+material = "beads"
+polygon = [[-0.03, 0], [0.03, 0], [0.1, 0.121], [0.1, 0.25], [-0.1, 0.25], [-0.1, 0.121]]
+[walls.left]
+polyline = [[-0.1, 0.4], [-0.1, 0.121], [-0.03, 0], [-0.08, 0]]
+[walls.right]
+polyline = [[0.08, 0], [0.03, 0], [0.1, 0.121], [0.1, 0.4]]
+[gates.mouth]
+from = [-0.03, 0]
+to = [0.03, 0]
+max_speed = 0.5
+[outflows.below]
+lower = [-0.2, -0.3]
+upper = [0.2, -0.15]
+[run]
+step = "10 ms"
+until = "0.6 s"
+"#;
+    let mut unit = Unit::new(&scene::parse("hopper", text).unwrap());
+    unit.set("gate.mouth.opening", 1.0);
+    unit.run_to(0.5);
+    unit.set("gate.mouth.opening", 0.5);
+    // 30 mm are 60 ms of its way.
+    unit.run_to(0.58);
+    assert_eq!(unit.get("gate.mouth.actual_opening"), 0.5);
+}
