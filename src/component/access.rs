@@ -66,6 +66,13 @@ impl Component {
         }
     }
 
+    /// The range of a variable, SI; that of an inflow's rate follows from its material's density as it is set, and is only that rates
+    /// are not negative until [`Component::settle`].
+    #[must_use]
+    pub fn range_of(&self, row: &Variable) -> Option<(f64, f64)> {
+        self.range_now(row, !self.is_unsettled())
+    }
+
     /// Inputs that were clamped to their range since the last call of this, because `saturate_inputs` is set: one
     /// line each, for logs.
     pub fn take_notes(&mut self) -> Vec<String> {

@@ -51,7 +51,7 @@ impl Pending {
         slopes: &[f64],
         source: &str,
     ) {
-        let inputs = applied_inputs(component, references, slopes, source, |_, slope| slope);
+        let inputs = applied_inputs(component, references, slopes, source, |_, _, slope| slope);
         self.inputs.extend(inputs.map(|input| AppliedInput {
             slope: true,
             ..input
@@ -134,8 +134,8 @@ impl Pending {
 }
 
 /// As an input holds it: what was accepted out of its range was clamped.
-fn held(variable: &Variable, value: f64) -> f64 {
-    match variable.range {
+fn held(component: &Component, variable: &Variable, value: f64) -> f64 {
+    match component.range_of(variable) {
         Some((least, most)) if variable.causality == Causality::Input => value.clamp(least, most),
         _ => value,
     }
@@ -147,7 +147,7 @@ fn applied_inputs(
     references: &[ValueReference],
     values: &[f64],
     source: &str,
-    told: impl Fn(&Variable, f64) -> f64,
+    told: impl Fn(&Component, &Variable, f64) -> f64,
 ) -> impl Iterator<Item = AppliedInput> {
     let mut rest = values;
     // References were accepted by the component, so that all are known.
@@ -155,7 +155,10 @@ fn applied_inputs(
         let variable = component.variables().by_reference(reference)?;
         let (own, others) = rest.split_at(variable.len().min(rest.len()));
         rest = others;
-        let own: Vec<f64> = own.iter().map(|&value| told(variable, value)).collect();
+        let own: Vec<f64> = own
+            .iter()
+            .map(|&value| told(component, variable, value))
+            .collect();
         Some(AppliedInput {
             reference,
             name: variable.name.clone(),

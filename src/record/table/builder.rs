@@ -4,19 +4,19 @@ use super::{Column, Table};
 use crate::component::{Causality, Component, Start, ValueKind, VariableTable};
 use crate::record::read::Body;
 use crate::record::standing::Standing;
-use crate::scene;
+use crate::scene::{InputTarget, Scene};
 use crate::wire::messages::{Applied, AppliedEvent, Gauge, StepStats};
 use std::collections::HashMap;
 
 /// A table in the making.
 pub(super) struct Builder<'a> {
     standing: &'a Standing,
-    scene: scene::Scene,
+    scene: Scene,
     table: Table,
     /// Columns of a variable: one, or one each element.
     places: HashMap<String, Vec<usize>>,
-    /// Of each column.
-    ranges: Vec<Option<(f64, f64)>>,
+    /// Columns of the inflows' rates, in the order of the scene.
+    rates: Vec<usize>,
     now: Now,
     /// Time of the last line of figures [s].
     time: f64,
@@ -31,7 +31,7 @@ pub(super) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    pub(super) fn new(scene: scene::Scene, span: (f64, f64), standing: &'a Standing) -> Self {
+    pub(super) fn new(scene: Scene, span: (f64, f64), standing: &'a Standing) -> Self {
         let variables = VariableTable::of(&scene);
         let mut places: HashMap<String, Vec<usize>> = HashMap::new();
         let (mut columns, mut row, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
@@ -65,22 +65,27 @@ impl<'a> Builder<'a> {
                 values: Vec::new(),
             });
         }
+        let rate = |i| variables.by_reference(variables.input(InputTarget::InflowRate(i)));
+        let rates =
+            (0..scene.inflows.len()).filter_map(|i| places.get(&rate(i)?.name)?.first().copied());
         Self {
             standing,
-            scene,
+            rates: rates.collect(),
             table: Table {
                 columns,
                 ..Table::default()
             },
             places,
-            ranges,
             lines: 0,
             saves: 0,
             saved: HashMap::new(),
             now: Now {
                 slopes: vec![0.0; row.len()],
                 row,
+                ranges,
+                parameters: scene.adjustables.iter().map(|a| a.start).collect(),
             },
+            scene,
             time: 0.0,
             stepped: false,
             span,
@@ -98,6 +103,12 @@ impl<'a> Builder<'a> {
             Ok(component)
         });
         let slopes = component.as_ref().map(Component::input_slopes);
+        if let Ok(component) = &component {
+            for (name, value) in component.changed_parameters() {
+                self.set_parameter(name, value);
+            }
+            self.settle();
+        }
         for (place, column) in self.table.columns.iter().enumerate() {
             if !column.is_input {
                 continue;
@@ -146,6 +157,9 @@ impl<'a> Builder<'a> {
 
     fn inputs(&mut self, applied: &Applied) {
         for input in &applied.inputs {
+            if let [value] = input.values[..] {
+                self.set_parameter(&input.name, value);
+            }
             if input.slope {
                 self.slope(&input.name, &input.values);
             } else {
@@ -159,9 +173,32 @@ impl<'a> Builder<'a> {
         }
         match applied.event() {
             AppliedEvent::Step => self.stepped = true,
+            AppliedEvent::Initialize => self.settle(),
             AppliedEvent::Save => self.save(&applied.state),
             AppliedEvent::Restore => self.restore(&applied.state),
             _ => {}
+        }
+    }
+
+    fn set_parameter(&mut self, name: &str, value: f64) {
+        let mut all = self.scene.adjustables.iter();
+        if let Some(place) = all.position(|parameter| parameter.name == name) {
+            self.now.parameters[place] = value;
+        }
+    }
+
+    /// Fixed parameters take effect: what inflows let in follows from their material's density.
+    fn settle(&mut self) {
+        // The component refused what breaks a rule.
+        let Ok(scene) = self.scene.adjusted(&self.now.parameters) else {
+            return;
+        };
+        for (&place, inflow) in self.rates.iter().zip(&scene.inflows) {
+            let value = &mut self.now.row[place];
+            if *value > inflow.max_rate {
+                *value = inflow.max_rate;
+            }
+            self.now.ranges[place] = Some((0.0, inflow.max_rate));
         }
     }
 
@@ -188,8 +225,13 @@ impl<'a> Builder<'a> {
 
     /// Inputs that had a slope hold what they reached in so many seconds, as the component has it, bit for bit.
     fn ramp(&mut self, elapsed: f64) {
-        let Now { row, slopes } = &mut self.now;
-        for ((value, slope), range) in row.iter_mut().zip(slopes).zip(&self.ranges) {
+        let Now {
+            row,
+            slopes,
+            ranges,
+            ..
+        } = &mut self.now;
+        for ((value, slope), range) in row.iter_mut().zip(slopes).zip(ranges) {
             if *slope == 0.0 {
                 continue;
             }
@@ -230,6 +272,10 @@ struct Now {
     row: Vec<f64>,
     /// Of each column, per second; only inputs have one, for the step that comes.
     slopes: Vec<f64>,
+    /// Of each column.
+    ranges: Vec<Option<(f64, f64)>>,
+    /// Values of the scene's adjustables.
+    parameters: Vec<f64>,
 }
 
 /// Whether a time is in a span [s]: as the whole nanoseconds that times of logs are, since a point at 0.3 s may be a bit later.
