@@ -20,6 +20,7 @@ use super::clock::timed;
 use super::{Error, Machine};
 use crate::component::{Component, next_point};
 use crate::scene;
+use crate::units::hex;
 use crate::validate::SOURCES;
 
 /// A numerical choice that differs from the defaults.
@@ -171,7 +172,7 @@ fn key(text: &str) -> String {
     let mut hash = Sha256::new();
     hash.update(SOURCES.as_bytes());
     hash.update(text.as_bytes());
-    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+    hex(&hash.finalize())
 }
 
 /// One setting, on one thread.

@@ -6,6 +6,7 @@
 
 use super::Error;
 use crate::scene::MOST_PARTICLES;
+use crate::units::hex;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
@@ -202,10 +203,6 @@ fn checksum(prefix: &[u8], payload: &[u8]) -> [u8; 32] {
 /// A slice of known length as an array; zero-filled or cut if the length is wrong, which no caller does.
 fn array<const N: usize>(slice: &[u8]) -> [u8; N] {
     std::array::from_fn(|i| slice.get(i).copied().unwrap_or(0))
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -5,13 +5,13 @@
 //! a `foxglove.PointCloud` become rows of numbers.
 
 use super::raw::Schema;
+use crate::units::hex;
 use prost::Message;
 use prost::encoding::{DecodeContext, WireType, decode_key, decode_varint, skip_field};
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, EnumDescriptorProto, FieldDescriptorProto, FileDescriptorSet};
 use serde_json::{Map, Value};
 use std::collections::HashMap;
-use std::fmt::Write as _;
 
 /// The messages and enumerations of a schema by full name.
 pub struct JsonReader {
@@ -216,28 +216,13 @@ pub fn number(value: f64) -> Value {
     serde_json::Number::from_f64(value).map_or_else(|| format!("{value}").into(), Value::Number)
 }
 
-/// Lower-case hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut hex, byte| {
-        // Writing to a String does not fail.
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
-}
-
 /// `data` of a cloud as `points`: a row of numbers each, in the order of `fields`.
 fn rows_of_points(value: &mut Map<String, Value>, data: &[u8]) -> Result<(), String> {
     let cloud = crate::wire::foxglove::PointCloud::decode(data).map_err(|e| e.to_string())?;
-    let stride = (cloud.point_stride as usize).max(1);
-    let points = cloud.data.chunks_exact(stride).map(|point| {
-        let at = |offset: u32| {
-            let from = point.get(offset as usize..)?.first_chunk::<4>()?;
-            Some(number(f64::from(f32::from_le_bytes(*from))))
-        };
-        cloud
-            .fields
-            .iter()
-            .map(|f| at(f.offset).unwrap_or_default())
+    let points = cloud.points().map(|point| {
+        let fields = cloud.fields.iter();
+        fields
+            .map(|field| field.of_point(point).map_or(Value::Null, number))
             .collect()
     });
     value.insert("points".to_owned(), Value::Array(points.collect()));

@@ -2,10 +2,10 @@
 
 use super::error::RecordError;
 use super::file::LogFile;
-use super::json::hex;
 use super::options::RecordOptions;
 use super::place::Place;
 use crate::component::{Component, Mode};
+use crate::units::hex;
 use crate::wire::convert::nanoseconds;
 use std::collections::BTreeMap;
 

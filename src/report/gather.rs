@@ -7,7 +7,7 @@ use super::shots::Shot;
 use crate::component::MassLedger;
 use crate::record::{Body, Ending, Entry, LogReader, Standing, Survey, Table};
 use crate::scene::{self, Scene};
-use crate::wire::foxglove::{FrameTransform, Pose, SceneEntity, SceneUpdate};
+use crate::wire::foxglove::{Pose, SceneEntity, SceneUpdate};
 use crate::wire::messages::StepStats;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -166,7 +166,7 @@ impl Gathered {
                     body: Body::Frame(frame),
                     ..
                 } => {
-                    frames.insert(frame.child_frame_id.clone(), placed(&frame));
+                    frames.insert(frame.child_frame_id.clone(), posed(Some(&frame.pose())));
                 }
                 Entry::Message {
                     body: Body::Particles(cloud),
@@ -367,13 +367,6 @@ fn solid(entity: &SceneEntity) -> Value {
         "id": entity.id, "kind": kind_of(entity), "frame": entity.frame_id,
         "lines": lines.collect::<Vec<_>>(), "boxes": boxes.collect::<Vec<_>>(), "label": label,
     })
-}
-
-fn placed(frame: &FrameTransform) -> [f64; 7] {
-    posed(Some(&Pose {
-        position: frame.translation.clone(),
-        orientation: frame.rotation.clone(),
-    }))
 }
 
 /// Position, then orientation as x y z w.

@@ -22,17 +22,7 @@ pub(super) struct Cloud {
 
 impl Cloud {
     pub(super) fn of(cloud: &PointCloud) -> Self {
-        let stride = (cloud.point_stride as usize).max(1);
-        let column = |name: &str| -> Vec<f32> {
-            let offset = cloud.fields.iter().find(|f| f.name == name);
-            let offset = offset.map_or(usize::MAX, |f| f.offset as usize);
-            let value = |point: &[u8]| {
-                let bytes = point.get(offset..)?.first_chunk::<4>()?;
-                Some(f32::from_le_bytes(*bytes))
-            };
-            let points = cloud.data.chunks_exact(stride);
-            points.map(|point| value(point).unwrap_or(0.0)).collect()
-        };
+        let column = |name: &str| cloud.column(name);
         let small = |name: &str| column(name).iter().map(|&v| v as u8).collect();
         let (vx, vy, vz) = (column("vx"), column("vy"), column("vz"));
         let speed = (0..vx.len()).map(|i| (vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i]).sqrt());

@@ -92,6 +92,12 @@ pub fn quote(text: &str) -> String {
     format!("{shown:?}")
 }
 
+/// Bytes as lower-case hexadecimal.
+#[must_use]
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// A number for a message: the shortest text that reads as it, with an exponent where zeros would fill the line.
 #[must_use]
 pub fn shown(number: f64) -> String {

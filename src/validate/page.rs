@@ -13,6 +13,7 @@ use sha2::{Digest, Sha256};
 use super::report::number;
 use super::store::replace;
 use super::{Effort, Error, Member, Recording, Report, Store, Study, Table, Verdict};
+use crate::units::hex;
 
 /// First line of every page.
 const MADE: &str = "<!-- Written by `sandgate validate`; do not edit. -->";
@@ -99,11 +100,7 @@ impl Found {
             hash.update(member.name.as_bytes());
             hash.update(recording.key.as_bytes());
         }
-        hash.finalize()
-            .iter()
-            .take(8)
-            .map(|b| format!("{b:02x}"))
-            .collect()
+        hex(&hash.finalize()[..8])
     }
 }
 

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 use super::{Error, Member, Recording};
+use crate::units::hex;
 use crate::whole_file;
 
 /// A folder of recordings.
@@ -37,7 +38,7 @@ impl Store {
             hash.update((part.len() as u64).to_le_bytes());
             hash.update(part.as_bytes());
         }
-        hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+        hex(&hash.finalize())
     }
 
     /// What an earlier run left of a member, whatever its key; `None` if there is nothing or it cannot be read.

@@ -13,6 +13,7 @@ pub mod messages;
 mod observer;
 mod pending;
 pub mod picture;
+mod viewed;
 
 pub use describe::{Described, DescribedEnum, Field, schema};
 pub use observer::{Both, Observer, Unobserved};

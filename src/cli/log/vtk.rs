@@ -11,7 +11,7 @@ use super::Window;
 use super::export::{cannot_write, create};
 use crate::cli::CliError;
 use crate::record::{Body, Ending, Entry, LogReader, Standing};
-use crate::wire::foxglove::{FrameTransform, PointCloud, Pose, SceneEntity, SceneUpdate};
+use crate::wire::foxglove::{PointCloud, Pose, SceneEntity, SceneUpdate};
 
 /// Writes what is in `window` to the new folder `folder`, all or nothing; gives a line for people and how the log ends.
 ///
@@ -50,7 +50,7 @@ fn fill(log: &Path, folder: &Path, window: &Window) -> Result<(String, Ending), 
         match body {
             Body::Scene(update) => scene = update,
             Body::Frame(frame) => {
-                frames.insert(frame.child_frame_id.clone(), placed(&frame));
+                frames.insert(frame.child_frame_id.clone(), posed(Some(&frame.pose())));
             }
             Body::Particles(cloud) => {
                 let stands = snapshots.next().is_some_and(|k| standing.snapshot(k));
@@ -121,20 +121,8 @@ impl Cells {
 }
 
 fn particle_data(cloud: &PointCloud) -> PolyData {
-    let stride = (cloud.point_stride as usize).max(1);
-    let count = cloud.data.len() / stride;
-    let column = |name: &str| -> Vec<f32> {
-        let offset = cloud.fields.iter().find(|f| f.name == name);
-        let Some(offset) = offset.map(|f| f.offset as usize) else {
-            return vec![0.0; count];
-        };
-        let value = |point: &[u8]| {
-            let bytes = point.get(offset..)?.first_chunk::<4>()?;
-            Some(f32::from_le_bytes(*bytes))
-        };
-        let points = cloud.data.chunks_exact(stride);
-        points.map(|point| value(point).unwrap_or(0.0)).collect()
-    };
+    let count = cloud.points().len();
+    let column = |name: &str| cloud.column(name);
     let vector = |names: [&str; 3]| -> Vec<f32> {
         let [x, y, z] = names.map(column);
         (0..count).flat_map(|i| [x[i], y[i], z[i]]).collect()
@@ -216,13 +204,6 @@ fn kind_of(entity: &SceneEntity) -> f32 {
         Some("outflow") => 3.0,
         _ => 4.0,
     }
-}
-
-fn placed(frame: &FrameTransform) -> Isometry3<f64> {
-    posed(Some(&Pose {
-        position: frame.translation.clone(),
-        orientation: frame.rotation.clone(),
-    }))
 }
 
 fn posed(pose: Option<&Pose>) -> Isometry3<f64> {

@@ -9,6 +9,7 @@ use crate::cli::CliError;
 use crate::component::{Causality, ValueKind, ValueReference};
 use crate::record::number;
 use crate::solver::StepBound;
+use crate::units::hex;
 
 /// Name of a step bound in files and tables.
 pub(in crate::cli) fn bound_name(bound: StepBound) -> &'static str {
@@ -221,9 +222,4 @@ pub(in crate::cli) fn short(value: f64) -> String {
     } else {
         text
     }
-}
-
-/// Lower-case hexadecimal.
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -5,7 +5,7 @@ use super::Run;
 use super::outcome::RedriveError;
 use crate::component::{StepReport, Wish, saved_checksum};
 use crate::record::compare::{disagree, same, same_alone};
-use crate::record::json::hex;
+use crate::units::hex;
 use crate::wire::Moment;
 use crate::wire::messages::{Applied, AppliedEvent, AppliedInput, AppliedMoment};
 
