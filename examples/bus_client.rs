@@ -114,7 +114,8 @@ impl Component<'_> {
     /// One request. The identifier makes it safe to send the same request again after a time-out.
     fn ask(&self, verb: &str, mut fields: Value) -> Result<Value, Box<dyn Error>> {
         self.asked.set(self.asked.get() + 1);
-        fields["req"] = json!(format!("{}-{}", std::process::id(), self.asked.get()));
+        // Of this session: in a container the number of the process is the same at each start.
+        fields["req"] = json!(format!("{}-{}", self.session.zid(), self.asked.get()));
         fields["client"] = json!("rust-example");
         let replies = self
             .session

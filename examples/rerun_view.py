@@ -87,8 +87,9 @@ def tell(path, field, radius):
                     grey = [180, 60, 20] if entity.id.startswith("gate.") else [110, 110, 110]
                     rr.log(f"scene/{entity.id.replace('.', '/')}", rr.LineStrips3D(lines, colors=grey, radii=radius), static=True)
         elif schema == "foxglove.FrameTransform":
-            move = value.translation
-            rr.log(f"scene/{value.child_frame_id.replace('.', '/')}", rr.Transform3D(translation=[move.x, move.y, move.z]))
+            move, turn = value.translation, value.rotation
+            pose = rr.Transform3D(translation=[move.x, move.y, move.z], quaternion=[turn.x, turn.y, turn.z, turn.w])
+            rr.log(f"scene/{value.child_frame_id.replace('.', '/')}", pose)
         elif topic.startswith("out/gauge/") and len(value.values) == 1:
             rr.log(f"gauges/{value.unit.replace('/', '_per_')}/{value.name}", rr.Scalars(value.values[0]))
     units = {f"gauges/{v.unit.replace('/', '_per_')}": v.unit for _, _, s, v in found if s == "sandgate.Gauge" and v.name.startswith("gauge.")}
