@@ -1,4 +1,4 @@
-//! What can go wrong at the interface, and its one severity map. Every message says what was found, what is
+//! What can go wrong at the interface, and how errors are told. Every message says what was found, what is
 //! allowed and what to do.
 
 use super::Mode;
@@ -65,13 +65,4 @@ impl Error {
         }
         self
     }
-}
-
-/// How bad an error is; adapters map this to FMI status, C code, exit code or bus reply.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Severity {
-    /// The call was refused and nothing happened; the component goes on.
-    Refused,
-    /// The component is in mode Failed until restore or reset.
-    Failed,
 }

@@ -32,7 +32,7 @@ mod status;
 mod variables;
 mod watch;
 
-pub use error::{Error, Severity};
+pub use error::Error;
 pub use host::HostSettings;
 pub use initialize::Beginning;
 pub use points::{next_point, step_end};

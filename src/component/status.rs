@@ -1,16 +1,11 @@
-//! What a component's errors are outside: FMI status, C code, exit code of the program, code of a bus reply. Errors that
+//! What a component's errors are outside: C code, exit code of the program, code of a bus reply. In FMI all are Error. Errors that
 //! an adapter has of its own (a file, a pointer, a request that is not JSON) are numbered there.
 
-use super::{Error, Severity};
+use super::Error;
 
 /// An error as the outside world numbers it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// Whether the component goes on.
-    pub severity: Severity,
-    /// `fmi2Status` and `fmi3Status`: always 3, Error. Never Warning or Discard: drivers mistake these for other
-    /// things; Fatal is for the library's own use.
-    pub fmi: i32,
     /// What `sandgate_*` functions return; 0 is success.
     pub c_code: i32,
     /// Exit code of the program.
@@ -23,26 +18,17 @@ impl Error {
     /// Its numbers.
     #[must_use]
     pub fn status(&self) -> Status {
-        let refused = Severity::Refused;
-        let (severity, c_code, exit_code, reply) = match self {
-            Error::Setup(_) => (refused, 1, 3, "internal"),
-            Error::NotAllowedNow { .. } => (refused, 2, 1, "state"),
-            Error::BadArgument { .. } => (refused, 3, 2, "range"),
-            Error::Solver(_) => (Severity::Failed, 4, 4, "diverged"),
-            Error::Snapshot(_) => (refused, 5, 5, "bad_request"),
+        let (c_code, exit_code, reply) = match self {
+            Error::Setup(_) => (1, 3, "internal"),
+            Error::NotAllowedNow { .. } => (2, 1, "state"),
+            Error::BadArgument { .. } => (3, 2, "range"),
+            Error::Solver(_) => (4, 4, "diverged"),
+            Error::Snapshot(_) => (5, 5, "bad_request"),
         };
         Status {
-            severity,
-            fmi: 3,
             c_code,
             exit_code,
             reply,
         }
-    }
-
-    /// Whether the component goes on after it.
-    #[must_use]
-    pub fn severity(&self) -> Severity {
-        self.status().severity
     }
 }

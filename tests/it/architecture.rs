@@ -67,19 +67,19 @@ fn module(path: &Path) -> String {
     first.trim_end_matches(".rs").to_owned()
 }
 
-/// Modules named after `crate::` in a line, also in `use crate::{a, b::c}`.
-fn named_modules(text: &str) -> Vec<(usize, String)> {
+/// Modules named after `path` (`crate::`) in a line, also in `use crate::{a, b::c}`.
+fn named_modules(text: &str, path: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     let code: String = code_lines(text)
         .map(|(_, line)| format!("{line}\n"))
         .collect();
-    for (at, _) in code.match_indices("crate::") {
+    for (at, _) in code.match_indices(path) {
         let before = code[..at].chars().next_back();
         if before.is_some_and(|c| c.is_alphanumeric() || c == '_') {
             continue;
         }
         let line = code[..at].matches('\n').count() + 1;
-        let rest = &code[at + "crate::".len()..];
+        let rest = &code[at + path.len()..];
         let names: Vec<String> = match rest.strip_prefix('{') {
             Some(list) => top_level_names(list),
             None => vec![leading_name(rest)],
@@ -139,7 +139,7 @@ fn modules_use_only_what_lies_below_them() {
             continue;
         };
         seen.insert(user.clone());
-        for (line, used) in named_modules(&std::fs::read_to_string(&path).unwrap()) {
+        for (line, used) in named_modules(&std::fs::read_to_string(&path).unwrap(), "crate::") {
             let allowed = used == user || rank(&used).is_some_and(|other| other < own);
             if !allowed {
                 wrong.push(format!(
@@ -156,10 +156,36 @@ fn modules_use_only_what_lies_below_them() {
     }
 }
 
+/// What ARCHITECTURE.md says of the packages in fmu/.
+#[test]
+fn the_shared_libraries_use_what_the_page_says() {
+    let used = |folder: &str| -> BTreeSet<String> {
+        let texts = files(&root().join(folder), ".rs").into_iter();
+        texts
+            .map(|path| std::fs::read_to_string(path).unwrap())
+            .flat_map(|text| named_modules(&text, "sandgate::"))
+            .map(|(_, name)| name)
+            .collect()
+    };
+    let names =
+        |list: &[&str]| -> BTreeSet<String> { list.iter().map(|n| (*n).to_owned()).collect() };
+    let page = [
+        "bus",
+        "component",
+        "fmi",
+        "math",
+        "record",
+        "scene",
+        "units",
+        "wire",
+    ];
+    assert_eq!(used("fmu"), names(&page));
+}
+
 #[test]
 fn the_rule_finds_what_it_should() {
     let text = "use crate::{scene::{a, b}, bus};\nfn f() { crate::cli::main() } // crate::fmi\nuse mycrate::x;";
-    let found: Vec<String> = named_modules(text)
+    let found: Vec<String> = named_modules(text, "crate::")
         .into_iter()
         .map(|(_, name)| name)
         .collect();
