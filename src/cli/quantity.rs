@@ -15,6 +15,17 @@ pub(super) fn positive_time(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A speed against the clock, greater than 0 and perhaps infinite [1].
+///
+/// # Errors
+/// As [`positive_time`].
+pub(super) fn speed(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(factor) if factor > 0.0 => Ok(factor),
+        _ => Err("allowed: a number above 0, or inf for as fast as possible".to_owned()),
+    }
+}
+
 /// A time span of 0 or more [s].
 ///
 /// # Errors

@@ -37,7 +37,7 @@ pub(super) struct Args {
     #[arg(long)]
     allow_open_listener: bool,
     /// Step without being asked: simulated over wall time, such as 1, or inf for as fast as possible
-    #[arg(long, value_name = "FACTOR", value_parser = realtime_factor, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACTOR", value_parser = quantity::speed, allow_hyphen_values = true)]
     realtime_factor: Option<f64>,
     /// Count whoever steps it as lost after so long without a request, "10 s" or plain seconds
     #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]
@@ -73,13 +73,6 @@ Keys (docs/zenoh.md has them all), below sandgate/v1/NAME:
 
 Unless told otherwise it listens on this machine only, looks for nobody and waits for `step` requests.
 Schedules of the scene are for `sandgate run`: here clients set the inputs.";
-
-fn realtime_factor(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(factor) if factor > 0.0 => Ok(factor),
-        _ => Err("allowed: a number above 0, or inf for as fast as possible".to_owned()),
-    }
-}
 
 /// Serves until it is ended.
 ///

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::Choice;
 use crate::bus::{Advice, Outlet, ServeOptions, ZenohConfig};
-use crate::cli::{CliError, say, stop};
+use crate::cli::{CliError, quantity, say, stop};
 use crate::record::{RawEntry, RawMessage, RawReader, Survey, Topics, below_base};
 use crate::wire::foxglove::FrameTransform;
 use crate::wire::keys;
@@ -22,7 +22,7 @@ pub(super) struct Args {
     /// A log file
     file: PathBuf,
     /// Simulated over wall time, or inf for as fast as possible
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = quantity::speed)]
     speed: f64,
     /// Begin again at the end, until Ctrl-C
     #[arg(long = "loop")]
@@ -57,13 +57,6 @@ const AFTER_HELP: &str = "\
 Published is what was published before: out/** (choose fewer with --topic). Calls are in the log, too, but nobody is
 asked again. With --from, the last scene and the last of each frame before it come first, so that viewers have walls and
 gates. Where a log goes back in time, it is published in its order.";
-
-fn speed(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(factor) if factor > 0.0 => Ok(factor),
-        _ => Err("allowed: a number above 0, or inf for as fast as possible".to_owned()),
-    }
-}
 
 /// Carries out `sandgate log replay`.
 ///

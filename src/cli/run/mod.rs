@@ -5,6 +5,7 @@
 //! `summary` holds the final figures, `progress` shows how far it is. What the component computes does not depend
 //! on anything here but communication steps and inputs.
 
+mod columns;
 mod curve;
 mod folder;
 mod lock;
@@ -52,7 +53,7 @@ pub(super) struct Args {
     /// Ctrl-C in any case, and when a step fails as it was before that step)
     #[arg(long, value_name = "TIME", value_parser = quantity::positive_time, allow_hyphen_values = true)]
     checkpoint_every: Option<f64>,
-    /// Go on from a saved state, and in its folder unless --out names another
+    /// Go on from a saved state; in its folder if a run made that, unless --out names another
     #[arg(long, value_name = "FILE", conflicts_with = "force")]
     resume: Option<PathBuf>,
     /// Write no run.mcap

@@ -1,6 +1,6 @@
 //! What a run's figures say of its scene, in words for people.
 
-use super::series::Figures;
+use super::columns::Figures;
 use super::session::Session;
 use super::summary::{extremes, short};
 use crate::cli::remarks::remarks;
@@ -153,7 +153,7 @@ fn squeezed(session: &Session) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::series::GateColumns;
+    use super::super::columns::GateColumns;
     use super::*;
 
     /// 10 kg/s at most, 1 kg a row.

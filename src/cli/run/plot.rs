@@ -12,8 +12,10 @@ use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
+use super::columns::Column;
 use super::curve::{Curve, Point};
-use super::series::{Column, Series};
+use super::series::Series;
+use crate::validate::chart::axis_number;
 
 const WIDTH: u32 = 1100;
 const PANEL: u32 = 210;
@@ -127,7 +129,7 @@ fn axes<'a, 'b>(
     let (x_rest, y_rest) = (rest(&x), rest(&y));
     let tick = |value: &f64, rest: f64| match value.abs() < rest {
         true => "0".to_owned(),
-        false => short(*value),
+        false => axis_number(*value),
     };
     let mut chart = ChartBuilder::on(plot)
         .margin(8)
@@ -221,21 +223,6 @@ fn thinned(piece: Vec<Point>, length: f64) -> Vec<Point> {
         }
     }
     kept
-}
-
-/// A number for an axis: four digits, exponents only where they help.
-fn short(value: f64) -> String {
-    let size = value.abs();
-    if size != 0.0 && !(1e-3..1e5).contains(&size) {
-        return format!("{value:.2e}");
-    }
-    let text = format!("{value:.4}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
-    }
 }
 
 #[cfg(test)]

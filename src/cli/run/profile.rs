@@ -3,7 +3,7 @@
 //! Rows are kept at even distances; when there are too many, every other one goes, and the next ones come twice as far apart. What is
 //! kept depends on the rows alone.
 
-use super::series::Column;
+use super::columns::Column;
 use crate::math::{norm, sub};
 use crate::scene::{GaugeKind, Point, Scene};
 

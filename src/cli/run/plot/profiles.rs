@@ -2,9 +2,9 @@
 
 use plotters::prelude::*;
 
+use super::super::columns::Column;
 use super::super::profile::Profile;
-use super::super::series::Column;
-use super::{Area, Failed, LEGEND, WIDTH, axes, margin, short, unit_title};
+use super::{Area, Failed, LEGEND, WIDTH, axes, axis_number, margin, unit_title};
 
 /// Colours of the first and the last moment.
 const EARLY: [f64; 3] = [170.0, 205.0, 235.0];
@@ -35,7 +35,7 @@ pub(super) fn draw(area: &Area, profile: &Profile, column: &Column) -> Result<()
         chart.draw_series(LineSeries::new(points, style))?;
         let y = LINE * (1 + i32::try_from(n)?) + 4;
         legend.draw(&PathElement::new(vec![(6, y + 6), (30, y + 6)], style))?;
-        let text = format!("t = {} s", short(*time));
+        let text = format!("t = {} s", axis_number(*time));
         legend.draw(&Text::new(text, (38, y), ("sans-serif", 13)))?;
     }
     Ok(())
