@@ -85,7 +85,8 @@ impl<const D: usize> Solver<D> {
     ///
     /// Where the pressure has fallen far, so has r; the excess of the old stress would make q = (|x| - tau)/r a rate that no
     /// material has, and r q a stress out of all bounds when the pressure returns. What is less than that stays: it makes
-    /// up for pressures that rise and fall from step to step.
+    /// up for pressures that rise and fall from step to step. In steps of sound the pressure may have returned already, and r has
+    /// not: so the excess is no more than what a shear rate of c/h makes up for.
     pub(super) fn cut_stress(&self, state: &mut State<D>) {
         let grains = &mut state.grains;
         let (q, phase) = (&grains.plastic_rate, &grains.phase);
@@ -98,7 +99,9 @@ impl<const D: usize> Solver<D> {
             } else {
                 material.shear_stress(rate, self.yield_pressure(i), r)
             };
-            let (size, most) = (self.geometry.size(lambda), SPARE * most);
+            let fastest = self.sound_speed_of(material) / self.kernel.h;
+            let excess = ((SPARE - 1.0) * most).min(self.viscosity[i] * fastest);
+            let (size, most) = (self.geometry.size(lambda), most + excess);
             if size > most {
                 *lambda = lambda.map(|row| scale(most / size, &row));
             }
