@@ -189,6 +189,9 @@ impl<'a> Builder<'a> {
 
     /// Fixed parameters take effect: what inflows let in follows from their material's density.
     fn settle(&mut self) {
+        if self.rates.is_empty() {
+            return;
+        }
         // The component refused what breaks a rule.
         let Ok(scene) = self.scene.adjusted(&self.now.parameters) else {
             return;
