@@ -47,7 +47,7 @@ table! {
         optional diffusion_gate_time: Time, in Range::from(0.0);
         /// Relaxation time of the strain rate in the pressure law; 20 to 200 ms is useful.
         optional strain_relaxation_time: Time, in Range::above(0.0), default "50 ms";
-        /// Share of viscous stress carried pair by pair, against zero-energy modes; left out: 0.05, or 0.5 in scenes of Newtonian fluids alone.
+        /// Share of viscous stress carried pair by pair, against zero-energy modes; left out: 0.05, or 0.5 in scenes of Newtonian fluids alone. Above 0.5 iterations of the exact yield may run away.
         optional pair_viscosity_share: Ratio, in Range::within(0.0, 0.95);
         /// Whose rigid rotation makes no stress at free surfaces.
         optional rotation: RotationWord, default "cohesive";
