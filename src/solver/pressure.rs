@@ -42,7 +42,7 @@ impl<const D: usize> Default for Prediction<D> {
 }
 
 impl<const D: usize> Solver<D> {
-    /// 2 delta h/c of (E8) in acoustic steps of dt [s]: no more than evens a particle out with its neighbours, of whose pressures all are of
+    /// 2 delta h/c of (E8) [s] at a sound speed [m/s] in acoustic steps of dt [s], (E8b): no more than evens a particle out with its neighbours, of whose pressures all are of
     /// the step's start. With more each goes past the others, and further every step.
     pub(super) fn diffusion_strength(&self, sound_speed: f64, dt: f64) -> f64 {
         let per_sound = self.kernel.h / sound_speed;

@@ -238,8 +238,8 @@ until = "2.4 s"
     assert!(unit.get("gate.main.actual_opening") < 0.25);
 }
 
-/// A gate flush with the lip of a steep hopper has the stream along its edge all the time: single grains of it held it, by up to twice the
-/// time of its way.
+/// A gate flush with the lip of a steep hopper has the stream along its edge all the time: single grains of it held it, for more than
+/// the time of its way.
 #[test]
 fn a_stream_along_the_lip_holds_no_gate() {
     let text = r#"
