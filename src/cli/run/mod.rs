@@ -7,6 +7,7 @@
 
 mod columns;
 mod curve;
+mod ending;
 mod folder;
 mod lock;
 mod log;

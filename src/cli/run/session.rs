@@ -1,17 +1,17 @@
-//! A run in progress: sets the scheduled inputs, steps, samples, logs, saves; and closes everything in good order
-//! whether it ended, was interrupted or failed.
+//! A run in progress: sets the scheduled inputs, steps, samples, logs and saves.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::ending::Outcome;
 use super::folder::{CHECKPOINT, Folder};
 use super::log::RunLog;
 use super::progress::Progress;
 use super::series::Series;
-use super::{plot, shell_word, summary};
+use super::summary;
+use crate::cli::CliError;
 use crate::cli::clock::{Stopwatch, cores};
-use crate::cli::{CliError, say};
 use crate::component::{Component, Mode, StepReport, Wish, next_point};
 use crate::scene::Scene;
 
@@ -29,36 +29,6 @@ pub(super) struct Plan {
     pub(super) go_on: String,
     /// Whether to write a log.
     pub(super) log: bool,
-}
-
-/// How the stepping ended.
-pub(super) enum Outcome {
-    /// At the end time.
-    Finished,
-    /// By Ctrl-C, at a communication point.
-    Interrupted,
-    /// By an error; everything before it stands.
-    Failed(CliError),
-}
-
-impl Outcome {
-    /// The status in `summary.json` and in the log's end, and the error's text.
-    fn words(&self) -> (&'static str, Option<String>) {
-        match self {
-            Self::Finished => ("finished", None),
-            Self::Interrupted => ("interrupted", None),
-            Self::Failed(error) => ("failed", Some(error.as_warning())),
-        }
-    }
-
-    /// What could not be done at the end is the error of a run that had none, and else a warning.
-    fn fails_by(&mut self, done: Result<(), CliError>) {
-        match (done, &self) {
-            (Ok(()), _) => {}
-            (Err(error), Self::Failed(_)) => tell!("warning: {}", error.as_warning()),
-            (Err(error), _) => *self = Self::Failed(error),
-        }
-    }
 }
 
 /// Figures of this part of a run (a resumed run has several parts).
@@ -82,10 +52,10 @@ pub(super) struct Session {
     pub(super) part: Part,
     pub(super) case: String,
     pub(super) log: RunLog,
-    progress: Progress,
+    pub(super) progress: Progress,
     next_checkpoint: f64,
     /// Time of the last state that this part saved [s].
-    saved: Option<f64>,
+    pub(super) saved: Option<f64>,
     /// Whether it has been told that a checkpoint could not be written.
     warned: bool,
 }
@@ -255,34 +225,13 @@ impl Session {
     }
 
     /// Saves the state; the table is on disk first, so that a resumed run finds its rows.
-    fn checkpoint(&mut self) -> Result<(), CliError> {
+    pub(super) fn checkpoint(&mut self) -> Result<(), CliError> {
         self.series.flush()?;
         self.folder.replace(CHECKPOINT, &self.component.save()?)?;
         self.saved = Some(self.component.time());
         self.write_summary("running", None)?;
         self.plan_checkpoint();
         Ok(())
-    }
-
-    /// Saves the state that the run ends with, for the last time. That of a failed step is none to go on from: the one before
-    /// it is saved in its place, and what then stands in the summary is of that one, too. Answers its time [s], if so.
-    fn last_checkpoint(&mut self, outcome: &mut Outcome) -> Option<f64> {
-        let went_back = self.component.mode() == Mode::Failed && self.component.back_to_kept();
-        let now = self.component.time();
-        let saved = match self.component.mode() {
-            Mode::Stepping => self.checkpoint(),
-            _ => self.series.flush(),
-        };
-        if saved.is_err() && self.saved != Some(now) {
-            let before = match self.saved {
-                Some(time) => format!("the last that was is that of t = {time} s"),
-                None => "none was in this run".to_owned(),
-            };
-            tell!("warning: the state at t = {now} s is not saved; {before}");
-        }
-        let time = (went_back && saved.is_ok()).then_some(now);
-        outcome.fails_by(saved);
-        time
     }
 
     fn plan_checkpoint(&mut self) {
@@ -292,74 +241,8 @@ impl Session {
         }
     }
 
-    fn write_summary(&self, status: &str, error: Option<&str>) -> Result<(), CliError> {
+    pub(super) fn write_summary(&self, status: &str, error: Option<&str>) -> Result<(), CliError> {
         let text = summary::json(self, status, error)?;
         self.folder.replace("summary.json", text.as_bytes())
-    }
-
-    /// The last summary. Where there is no room for it the one that says "running" is written over, without the variables.
-    fn write_last_summary(&self, status: &str, error: Option<&str>) -> Result<(), CliError> {
-        let written = self.write_summary(status, error);
-        if written.is_err() {
-            let text = summary::json(self, status, error)?;
-            let short = serde_json::from_str(&text).map(|mut all: serde_json::Value| {
-                all["variables"] = serde_json::json!({});
-                all.to_string()
-            });
-            if let Ok(short) = short {
-                self.folder.write_over("summary.json", short.as_bytes());
-            }
-        }
-        written
-    }
-
-    /// Finishes every file, prints the table and says how to go on. A file that cannot be written does not keep the others
-    /// from being written, and does not hide what ended the run: the first error is the run's, the others are told.
-    ///
-    /// # Errors
-    /// The error that ended the run; [`CliError::Interrupted`] with the command to go on; [`CliError::File`],
-    /// [`CliError::Log`].
-    pub(super) fn close(mut self, mut outcome: Outcome) -> Result<(), CliError> {
-        self.progress.finish();
-        match self.finish_log(&outcome) {
-            // Told already: it is the log that ended the run.
-            Err(_) if matches!(outcome, Outcome::Failed(CliError::Log(_))) => {}
-            finished => outcome.fails_by(finished),
-        }
-        let before_failure = self.last_checkpoint(&mut outcome);
-        self.series.end_with_whole_row();
-        let title = &self.component.scene().title;
-        match plot::svg(title, &self.series) {
-            Ok(svg) => outcome.fails_by(self.folder.replace("gauges.svg", svg.as_bytes())),
-            Err(error) => tell!("warning: gauges.svg could not be drawn: {error}"),
-        }
-        let (status, error) = outcome.words();
-        let summary = self.write_last_summary(status, error.as_deref());
-        outcome.fails_by(summary);
-        let said = say(&summary::table(&self, outcome.words().0));
-        outcome.fails_by(said);
-        let checkpoint = self.folder.file(CHECKPOINT);
-        if let Some(time) = before_failure {
-            tell!(
-                "saved in {}: the state at t = {time} s, before the step that failed. With the same scene, inputs and steps it \
-                 fails there again",
-                checkpoint.display()
-            );
-        }
-        match outcome {
-            Outcome::Finished => Ok(()),
-            Outcome::Interrupted => Err(CliError::Interrupted(format!(
-                "interrupted at t = {} s; everything is saved. Go on with:\n  {} --resume {}",
-                self.component.time(),
-                self.plan.go_on,
-                shell_word(&checkpoint)
-            ))),
-            Outcome::Failed(error) => Err(error),
-        }
-    }
-
-    fn finish_log(&mut self, outcome: &Outcome) -> Result<(), CliError> {
-        let (status, error) = outcome.words();
-        self.log.finish(&self.component, status, error.as_deref())
     }
 }
