@@ -20,7 +20,7 @@ pub(super) struct FaceSums<const D: usize> {
     pub(super) around: Tensor<D>,
     /// sum g.
     pub(super) s: Vector<D>,
-    /// What of it is there because rings and their walls are not of one length; 0 in the plane, in space and without friction.
+    /// What of it is there because rings and their walls are not of one length; 0 in the plane, in space and without slip.
     pub(super) by_length: Vector<D>,
     /// sum v_w (x) g.
     pub(super) carried: Tensor<D>,

@@ -26,9 +26,8 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) c: Tensor<D>,
     /// sum c (P g)(P g)^T v_w.
     pub(super) cv: Vector<D>,
-    /// Share of what points push along the face that is the lattices' phase and no part of s (`flat_face`): 1 in front of one flat face
-    /// with friction, 0 at its ends and elsewhere.
-    pub(super) smoothed: f64,
+    /// What the lattices' phase made of s along the one flat face that material slides along, and s lacks (`flat_face`); else 0.
+    pub(super) phase: Vector<D>,
     /// 4 k (N - 1/2) of (W5) [m^2/s^2] and its acceleration [m/s^2]; 0 in front of walls.
     pub(super) barrier: f64,
     pub(super) push: Vector<D>,

@@ -202,11 +202,11 @@ impl<const D: usize> Solver<D> {
         let vf = self.wall_volume(pushing.i, w, self.walls.weight[w as usize]) * self.kernel.f(r);
         let g = scale(vf, x);
         let projection = self.wall_projection(&state.grains.position[pushing.i], w, state);
-        let smoothed = pushing.seen.map_or(0.0, |w| w.smoothed);
-        let of_pressure = match projection {
-            Some(n) if smoothed > 0.0 => {
-                let less = smoothed * (1.0 - self.ring_part(pushing.i, w));
-                sub(&g, &scale(less, &along(&n, &g)))
+        // A point has of what the sum lacks (W3b) as much as of the push across the face, and keeps what it pushes along itself.
+        let of_pressure = match (projection, pushing.seen) {
+            (Some(n), Some(seen)) if seen.phase != [0.0; D] => {
+                let share = dot(&n, &g) / dot(&n, &seen.s);
+                sub(&g, &scale(share, &seen.phase))
             }
             _ => g,
         };

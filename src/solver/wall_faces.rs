@@ -118,9 +118,8 @@ impl<'s, const D: usize> WallFaces<'s, D> {
             }
             add_outer(&mut w.lean, -face.lean, n, n);
         }
-        let rubs = face.free_slip && solver.walls.groups[face.group as usize].friction > 0.0;
-        self.flat.add(face, rubs && face.bend.is_none(), moves);
-        if !rubs {
+        self.flat.add(face, moves);
+        if !face.free_slip || solver.walls.groups[face.group as usize].friction == 0.0 {
             return;
         }
         let to_area = -2.0 * solver.volume[self.i] * solver.width;

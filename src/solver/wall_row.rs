@@ -172,7 +172,7 @@ impl<const D: usize> Solver<D> {
         if self.has_streams {
             face.pushed += dot(&self.point_velocity(point.wall), g);
         }
-        if point.spec.friction > 0.0 {
+        if face.free_slip {
             face.add_length(self.ring_part(own.i, point.wall), g);
         }
         if own.is_fluid {
@@ -244,7 +244,7 @@ impl<const D: usize> WallRow<D> {
             q: [[0.0; D]; D],
             c: [[0.0; D]; D],
             cv: [0.0; D],
-            smoothed: 0.0,
+            phase: [0.0; D],
             barrier: 0.0,
             push: [0.0; D],
             rub: Rub::NONE,

@@ -38,6 +38,7 @@ mod tension;
 mod turning;
 mod validity;
 mod walls;
+mod waves;
 
 use sandgate::component::{Component, ValueReference};
 use sandgate::scene::{self, Scene};
