@@ -159,6 +159,13 @@ impl Material {
         self.grains.pore_density > 0.0
     }
 
+    /// Whether a fluid's pressure goes on all through it: fluids, and grains whose pores are full.
+    #[inline]
+    #[must_use]
+    pub fn holds_fluid(&self) -> bool {
+        self.is_fluid() || self.is_saturated()
+    }
+
     /// Whether it cannot rest under uneven pressure: a fluid without yield stress.
     #[inline]
     #[must_use]
@@ -170,7 +177,7 @@ impl Material {
     #[inline]
     #[must_use]
     pub fn keeps_volume(&self) -> bool {
-        self.is_fluid() || self.is_saturated()
+        self.holds_fluid()
     }
 
     /// Density of the material at rest without load [kg/m^3].

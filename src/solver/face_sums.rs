@@ -32,7 +32,7 @@ pub(super) struct FaceSums<const D: usize> {
     pub(super) dragged: Vector<D>,
     /// sum |F| V (n.x)^2 of fluids without slip; else 0.
     pub(super) lean: f64,
-    /// sum |F| V x x^T of fluids, of x along the face of grains that bear a fluid (W7); else 0.
+    /// sum |F| V x x^T of fluids and of grains with full pores, of x along the face of dry grains that bear a fluid (W7, W10); else 0.
     pub(super) moment: Tensor<D>,
     /// sum |F| V x (x.v_w) of the same; else 0.
     pub(super) moment_drive: Vector<D>,

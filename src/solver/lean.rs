@@ -30,9 +30,12 @@
 //! drive nothing. Taken whole, two of 200 random scenes (mud that hits its tub) gained 2 and 10 % of their energy.
 //!
 //! Grains keep their wall points, but for the pressure q of fluids in them: p_w in pores, 0 where there are none, and from a fluid
-//! to them it goes over as a jump. Along smooth faces, L made of the x along each,
+//! to them it goes over as a jump. L that of (W7) where pores are full, of dry grains along smooth faces, made of the x along each,
 //!
 //!   a += L (I - L)^-1 a_q,   a_q = -(1/rho_i) [sum_fluids (p_i + p_j - 2 q_i) g_ij + sum_grains (q_j - q_i) g_ij].    (W10)
+//!
+//! Across a wall that leaves the pressure that the row has too much there to the grains' own weight: p' of the first row is that at the
+//! wall, and not half a spacing of the water's weight more, with which a saturated layer rubbed.
 //!
 //! With fluids' walls alone what walls gave along themselves ended where the fluid did: they pushed fluids down under sand, and took
 //! weight from what lies on sand, by 0.3 dp of the pressure there. What a fluid pushes on grains is more than their weight, so that

@@ -39,8 +39,8 @@ pub(super) struct WallRow<const D: usize> {
     pub(super) lean: Tensor<D>,
     /// What images take from it.
     pub(super) lean_less: Tensor<D>,
-    /// L of (W7) before it is bounded: sum |F| V x x^T, the points' part of M, of fluids; of grains that bear a fluid with x along
-    /// each smooth face (W10); else 0.
+    /// L of (W7) before it is bounded: sum |F| V x x^T, the points' part of M, of fluids and of grains with full pores; of dry grains that
+    /// bear a fluid with x along each smooth face (W10); else 0.
     pub(super) moment: Tensor<D>,
     /// sum |F| V x (x.v_w) of the same, v_w the points' velocity; else 0.
     pub(super) moment_drive: Vector<D>,

@@ -242,7 +242,7 @@ impl<const D: usize> Solver<D> {
         let mut inwards = [0.0; D];
         block.for_each_pair(row, |j, _, g| {
             let material = &self.materials[state.grains.phase[j as usize] as usize];
-            if material.is_fluid() || material.is_saturated() {
+            if material.holds_fluid() {
                 for a in 0..D {
                     inwards[a] += g[a];
                 }

@@ -274,7 +274,7 @@ impl<const D: usize> Solver<D> {
             leant = scale(-vf * dot(&n, x).powi(2), &along(&n, &pushing.leant));
         }
         if seen.carried != [0.0; D] {
-            let carries = if self.material_of(state, i).is_fluid() {
+            let carries = if self.material_of(state, i).holds_fluid() {
                 *x
             } else {
                 let projection = self.wall_projection(xi, w, state);

@@ -27,7 +27,8 @@ struct Particle<'s, const D: usize> {
     x: &'s Vector<D>,
     v: &'s Vector<D>,
     is_fluid: bool,
-    /// Whether it is of grains that a fluid presses on, beside it or in its pores.
+    /// Whether a fluid's pressure goes on in it, or presses on it beside it or where there are pores.
+    holds_fluid: bool,
     bears_fluid: bool,
 }
 
@@ -71,7 +72,8 @@ impl<const D: usize> Solver<D> {
             x: &grains.position[i],
             v: &grains.velocity[i],
             is_fluid,
-            bears_fluid: meets_fluid || (self.has_pores && !is_fluid),
+            holds_fluid: material.holds_fluid(),
+            bears_fluid: meets_fluid || self.has_pores,
         };
         let mut faces = WallFaces::new(self, (i, row), contacts);
         let mut nearest2 = f64::INFINITY;
@@ -175,11 +177,11 @@ impl<const D: usize> Solver<D> {
         if face.free_slip {
             face.add_length(self.ring_part(own.i, point.wall), g);
         }
-        if own.is_fluid {
+        if own.is_fluid && !face.free_slip {
+            face.lean -= point.vf * dot(&point.normal, x).powi(2);
+        }
+        if own.holds_fluid {
             face.add_moment(-point.vf, x, vw);
-            if !face.free_slip {
-                face.lean -= point.vf * dot(&point.normal, x).powi(2);
-            }
         } else if own.bears_fluid && face.free_slip {
             face.add_moment(-point.vf, &along(&point.normal, x), vw);
         }

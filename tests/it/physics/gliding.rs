@@ -222,3 +222,19 @@ fn plugs_slide_as_coulomb_says_at_any_speed() {
         }
     }
 }
+
+/// Water in the pores does not rub: what of the weight the grains bear does, up to the wall. A light layer rubbed with 1.21 of that, as its first row
+/// had the pores' pressure of its place and the load of the wall's.
+#[test]
+fn saturated_layers_rub_with_what_presses_their_grains() {
+    for density in [1300.0, 1990.0] {
+        let material = format!(
+            "law = \"constant_friction\"\nfriction_angle = \"40 deg\"\ndensity = {density}\npore_fluid = \"water\"\n\
+             [materials.water]\nlaw = \"fluid\"\npreset = \"water\""
+        );
+        let exact = 0.3 * (density - 1000.0) / density;
+        let share = share_of_a_plug(1.0, &material, "") / exact;
+        println!("{density} kg/m^3: {share:.4} of mu_w (rho - rho_w)/rho");
+        assert!((share - 1.0).abs() < 0.03, "{density} kg/m^3: {share}");
+    }
+}
