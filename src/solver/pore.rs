@@ -6,13 +6,14 @@
 //! column's weight in its place, its eq. 10).
 //!
 //! This file is the equation and its rows; `solve` solves it, `effective` is what is left to press grain on grain,
-//! `follow` what a change of it does to material at rest.
+//! `follow` what a change of it does to material at rest, `rise` what becomes of water that a bed has run over.
 //!
 //! Symbols: k_ij = 2 V_i V_j |F|; sum_j k_ij (p_i - p_j - rho_w g.x_ij) = 0, x_ij = x_i - x_j; Dirichlet rows: p_j of fluids.
 
 mod air;
 mod effective;
 mod follow;
+mod rise;
 mod solve;
 
 use crate::kernel::WendlandC2;

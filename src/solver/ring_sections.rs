@@ -29,7 +29,7 @@ const APART: f64 = 0.35;
 /// Directions that are tried, over half a turn.
 const DIRECTIONS: usize = 12;
 
-/// What joining and halving moved from where to where, for whoever counts what crosses a section.
+/// What was moved other than by its velocity (joined, halved, let rise) from where to where, for whoever counts what crosses a section.
 #[derive(Debug, Default)]
 pub(super) struct Moved<const D: usize> {
     /// Places before [m].
@@ -39,7 +39,7 @@ pub(super) struct Moved<const D: usize> {
 }
 
 impl<const D: usize> Moved<D> {
-    fn note(&mut self, (phase, mass): (u8, f64), from: Vector<D>, to: Vector<D>) {
+    pub(super) fn note(&mut self, (phase, mass): (u8, f64), from: Vector<D>, to: Vector<D>) {
         self.before.push(from);
         self.after.push(0, phase, to, [0.0; D], mass, 1.0);
     }

@@ -55,7 +55,9 @@ impl<const D: usize> Solver<D> {
         self.push_streams(state, inputs.rates, dt);
         self.drain(state);
         self.keep_inside(state)?;
-        self.sweep_kinematics_in_valid_lists(state, false);
+        let seeps = state.steps.is_multiple_of(self.numerics.seepage_interval);
+        let rose = seeps && self.let_rise(state);
+        self.sweep_kinematics_in_valid_lists(state, rose);
         self.centre_lone(state);
         self.advance_density(state, dt, acoustic_dt)?;
         let came = self.feed(state, inputs.rates, dt);
@@ -66,7 +68,7 @@ impl<const D: usize> Solver<D> {
             on_move(&self.moved.before, &self.moved.after);
             self.moved = Moved::default();
         }
-        if came || state.steps.is_multiple_of(self.numerics.seepage_interval) {
+        if came || seeps {
             self.seep(state);
         }
         self.follow_pores(state, dt);
