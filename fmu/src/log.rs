@@ -47,10 +47,13 @@ impl Log {
         }
     }
 
-    /// Switches categories; no names mean all of them, as does `logAll`, the last one. Unknown names are refused and
-    /// nothing changes.
+    /// Switches categories; no names mean all of them, as does `logAll`, the last one. In FMI 2 (2.0.5, section 2.1.5) those that are not named
+    /// go off, and all do where `on` is false; FMI 3 leaves them as they are. Unknown names are refused and nothing changes.
     pub(crate) fn switch(&mut self, on: bool, names: &[&str]) -> Result<(), Fault> {
-        let mut wanted = self.on;
+        let mut wanted = match self.sink {
+            Sink::Fmi2(..) => [false; LOG_CATEGORIES.len()],
+            _ => self.on,
+        };
         if names.is_empty() {
             wanted = [on; LOG_CATEGORIES.len()];
         }

@@ -291,6 +291,30 @@ def test_nothing_is_logged_when_logging_is_off(version):
 
 
 @both
+def test_named_categories_are_those_that_are_on_in_fmi_2_and_switched_in_fmi_3(version):
+    fmu = Fmu(FMUS[version], logging=True).initialize()
+    steps = iter(range(10))
+
+    def categories(on, names):
+        fmu.fmu.setDebugLogging(on, names)
+        fmu.messages.clear()
+        k = next(steps)
+        run(fmu, first=k, last=k + 1)
+        with pytest.raises(FMICallException):
+            fmu.step(1000.0, H)
+        return [category for _, category, _ in fmu.messages]
+
+    narrowed = categories(True, ["logStatusError"])
+    assert narrowed == (["logStatusError"] if version == 2 else ["logEvents", "logStatusError"])
+    events = categories(True, ["logEvents"])
+    assert events == (["logEvents"] if version == 2 else ["logEvents", "logStatusError"])
+    off = categories(False, ["logStatusError"])
+    assert off == ([] if version == 2 else ["logEvents"])
+    assert categories(True, []) == ["logEvents", "logStatusError"]
+    fmu.free()
+
+
+@both
 def test_the_library_leaves_the_process_as_it_was(version):
     """No thread outlives the instance; directory, locale, environment, signals and floating-point mode stay."""
 
