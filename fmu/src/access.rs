@@ -234,7 +234,7 @@ pub(crate) fn no_variable_of_type(name: &str, count: usize) -> Result<(), Fault>
         return Ok(());
     }
     Err(Fault::border(format!(
-        "no variable is of type {name}; the types used are real (Float64), integer (Int64), Boolean and String"
+        "no variable is of type {name}; the types used are real (Float64), integer (Int64), Enumeration, Boolean and String"
     )))
 }
 

@@ -80,7 +80,14 @@ fn check<T>(pointer: *const T, count: usize, what: &str) -> Result<(), Fault> {
     let fits = count
         .checked_mul(size_of::<T>())
         .is_some_and(|bytes| isize::try_from(bytes).is_ok());
-    if !fits || !pointer.is_aligned() {
+    if !fits {
+        return Err(Fault::border(format!(
+            "{what}: found {count} values, expected at most {} of {} bytes each, what memory can hold; look at the count of the call",
+            isize::MAX as usize / size_of::<T>().max(1),
+            size_of::<T>()
+        )));
+    }
+    if !pointer.is_aligned() {
         return Err(Fault::border(format!(
             "{what}: found {count} values at {pointer:p}, expected an array aligned to {} bytes; look at the types of the call",
             align_of::<T>()

@@ -86,8 +86,16 @@ impl Gauged<'_> {
     }
 
     fn discharge(&self) -> Vec<Row> {
-        let rate = "mass that crossed from left to right in the last step, per second,";
-        let mass = "net mass that crossed from left to right since the start";
+        let [rate, mass] = match self.scene.dimension.axes() {
+            3 => [
+                "mass that crossed along (to - from) x span in the last step, per second,",
+                "net mass that crossed along (to - from) x span since the start",
+            ],
+            _ => [
+                "mass that crossed from left to right in the last step, per second,",
+                "net mass that crossed from left to right since the start",
+            ],
+        };
         vec![
             self.reading("discharge", "kg/s", 0, rate),
             self.reading("mass", "kg", 1, mass),

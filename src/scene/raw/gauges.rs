@@ -63,7 +63,7 @@ table! {
 }
 
 table! {
-    /// Mass that crosses a section from the left of the way `from` - `to` to its right, per time.
+    /// Mass that crosses a section from the left of the way `from` - `to` to its right, in space along (to - from) x span, per time.
     RawDischarge {
         /// One end of the section; in space one corner.
         required from: Coordinates<Length>;
