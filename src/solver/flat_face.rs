@@ -26,7 +26,7 @@ enum Seen<const D: usize> {
     Other,
 }
 
-/// The flat face, without the no-slip condition, that is all a particle sees, while it is.
+/// The flat face that a particle slides along and that is all it sees of walls, while it is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FlatFace<const D: usize> {
     seen: Seen<D>,

@@ -17,7 +17,8 @@ use crate::state::State;
 
 /// How much higher than a particle what covers it is, over the spacing [1].
 const ABOVE: f64 = 0.3;
-/// S_s/S_0 from which on it is covered, and S_w/S_0 up to which [1]. Under one whole row the first is 0.9, in front of an upright bank S_w is that.
+/// S_s/S_0 from which on it is covered, and S_w/S_0 up to which [1]. Under one whole row the first is 0.9; in a crack as wide as a spacing the second
+/// is 0.47, beside an upright bank 0.6.
 const COVERED: f64 = 0.75;
 const OPEN: f64 = 0.2;
 /// Distance up to which it changes places, over the spacing [1].
@@ -84,7 +85,8 @@ impl<const D: usize> Solver<D> {
             } else {
                 solid += share;
             }
-            let holds = material.grains.pore_density == fluid.rest_density();
+            let holds = material.grains.pore_density == fluid.rest_density()
+                && material.rest_density() > fluid.rest_density();
             // Of two as near, the one straight above.
             let beside = (distance * distance - height * height).max(0.0).sqrt();
             let is_near = distance < REACH * spacing && distance + beside < nearest.0;
@@ -120,11 +122,11 @@ impl<const D: usize> Solver<D> {
         }
         let density = self.materials[grains.phase[j] as usize].grains.pore_density;
         let deeper = density * self.gravity_norm * height;
-        for pressure in [
-            &mut grains.pore_pressure[j],
-            &mut grains.relaxed_pore_pressure[j],
-        ] {
-            *pressure += deeper;
+        grains.pore_pressure[j] += deeper;
+        let relaxed = &mut grains.relaxed_pore_pressure[j];
+        // 0 of what has just come.
+        if *relaxed != 0.0 {
+            *relaxed += deeper;
         }
     }
 
