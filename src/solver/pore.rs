@@ -42,18 +42,27 @@ pub(super) struct Work {
     near: Vec<Quad>,
 }
 
-/// sum_j 2 V_j |F| inside a square lattice of particles `spacing` apart [1/m^2].
-pub(super) fn lattice_sum<const D: usize>(kernel: &WendlandC2<D>, spacing: f64) -> f64 {
+/// Places of a square lattice, `spacing` apart, around one of them, out to the support and beyond it in its corners [m].
+fn lattice<const D: usize>(
+    kernel: &WendlandC2<D>,
+    spacing: f64,
+) -> impl Iterator<Item = Vector<D>> {
     let reach = (kernel.support() / spacing).ceil() as i64;
     let side = 2 * reach + 1;
-    let mut sum = 0.0;
-    for n in 0..side.pow(D as u32) {
+    (0..side.pow(D as u32)).map(move |n| {
         let mut rest = n;
-        let x: Vector<D> = std::array::from_fn(|_| {
+        std::array::from_fn(|_| {
             let c = rest % side - reach;
             rest /= side;
             c as f64 * spacing
-        });
+        })
+    })
+}
+
+/// sum_j 2 V_j |F| inside a square lattice of particles `spacing` apart [1/m^2].
+pub(super) fn lattice_sum<const D: usize>(kernel: &WendlandC2<D>, spacing: f64) -> f64 {
+    let mut sum = 0.0;
+    for x in lattice(kernel, spacing) {
         if norm(&x) > 0.0 {
             sum += kernel.f(norm(&x)).abs();
         }

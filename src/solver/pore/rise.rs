@@ -15,17 +15,19 @@ use crate::solver::Solver;
 use crate::solver::meeting::HARDER;
 use crate::state::State;
 
+use super::lattice;
+
 /// How much higher than a particle what covers it is, over the spacing [1].
 const ABOVE: f64 = 0.3;
 /// S_s/S_0 from which on it is covered, and S_w/S_0 up to which [1]. Under one whole row the first is 0.9; in a crack as wide as a spacing the second
-/// is 0.47, beside an upright bank 0.6.
+/// is 0.47, beside an upright bank 0.73 (by the kernel's sums over a lattice, h/dp = 1.6, in the plane).
 const COVERED: f64 = 0.75;
 const OPEN: f64 = 0.2;
 /// Distance up to which it changes places, over the spacing [1].
 const REACH: f64 = 1.5;
 
 impl<const D: usize> Solver<D> {
-    /// Lets fluid under saturated grains change places with them; returns whether any did. Lists must be made anew then.
+    /// Lets fluid under saturated grains change places with them (F8); returns whether any did. Lists must be made anew then.
     pub(in crate::solver) fn let_rise(&mut self, state: &mut State<D>) -> bool {
         if !self.has_pores || !self.has_fluids || self.gravity_norm == 0.0 {
             return false;
@@ -130,20 +132,10 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// sum dp^D W of a square lattice over what is higher.
+    /// S_0 [1].
     fn lattice_above(&self) -> f64 {
         let spacing = self.numerics.spacing;
-        let reach = (self.kernel.support() / spacing).ceil() as i64;
-        let side = 2 * reach + 1;
-        let points = (0..side.pow(D as u32)).map(|n| {
-            let mut rest = n;
-            std::array::from_fn::<f64, D, _>(|_| {
-                let c = rest % side - reach;
-                rest /= side;
-                c as f64 * spacing
-            })
-        });
-        let above = points.filter(|x| x[D - 1] > 0.0);
+        let above = lattice(&self.kernel, spacing).filter(|x| x[D - 1] > 0.0);
         spacing.powi(D as i32) * above.map(|x| self.kernel.w(norm(&x))).sum::<f64>()
     }
 }

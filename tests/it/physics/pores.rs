@@ -134,7 +134,7 @@ until = "3 s"
     assert!((pore - 1.0).abs() < 0.1, "{pore} of hydrostatic");
 }
 
-/// A bed of two boxes of sand, and water, in a tank 0.35 m long, of 5 mm.
+/// These bodies of sand (with full pores if `wet`) and water in a tank 0.35 m long, at 5 mm, with these gauges.
 fn sand_and_water(bodies: &str, wet: bool, gauges: &str) -> Unit {
     let pores = if wet { "pore_fluid = \"water\"" } else { "" };
     let text = format!(
