@@ -5,6 +5,9 @@
 //! own, and the thrust of a pressure P, as much as makes the fluid denser by [`DENSER`]:
 //!
 //!   dw/dt <= (P - p)/(rho L),   w <= Q/(rho A),   p the mean pressure before the face                               (W13)
+//!
+//! A stream that is behind when less is asked for goes on until it has caught up, so far as P stops it in the s that it is behind:
+//! w <= sqrt(2 P s/(rho L)). If it stopped at once, a rate that goes to and fro faster than it gathers speed would let in next to nothing.
 
 use crate::boundary::Piston;
 use crate::state::State;
@@ -37,7 +40,7 @@ impl<const D: usize> Solver<D> {
             let row = source.row_mass();
             let asked = rates[n].max(0.0) / row;
             // Only a stream that runs looks at what stands before it.
-            let faster = if asked > 0.0 {
+            let faster = if asked > 0.0 || state.inflows[n].rate > 0.0 {
                 self.thrust(state, (source, piston), state.inflows[n].advance) * dt
             } else {
                 0.0
@@ -45,7 +48,9 @@ impl<const D: usize> Solver<D> {
             let inflow = &mut state.inflows[n];
             inflow.pending += rates[n].max(0.0) * dt;
             let behind = (inflow.pending / row - inflow.advance).max(0.0);
-            let wanted = (behind / dt).min(CATCHING_UP * asked);
+            let stops = (2.0 * self.most_thrust(source) * behind).sqrt();
+            let wanted = (CATCHING_UP * asked).max(stops.min(inflow.rate));
+            let wanted = wanted.min(behind / dt);
             let rate = wanted.min(inflow.rate + faster).max(0.0);
             inflow.rate = rate;
             inflow.advance += rate * dt;
@@ -75,10 +80,15 @@ impl<const D: usize> Solver<D> {
         if count == 0 {
             return f64::INFINITY;
         }
+        let pressure = sum / (count.max(source.slots.len()) as f64 * source.density);
+        self.most_thrust(source) - pressure / (source.length * spacing)
+    }
+
+    /// P/(rho L) of a stream, in rows [1/s^2].
+    fn most_thrust(&self, source: &Source<D>) -> f64 {
         let material = &self.materials[usize::from(source.phase)];
         let most = DENSER * self.sound_speed_of(material).powi(2);
-        let pressure = sum / (count.max(source.slots.len()) as f64 * source.density);
-        (most - pressure) / (source.length * spacing)
+        most / (source.length * self.numerics.spacing)
     }
 
     /// Lets in a row of a stream that pushes where one is due and has room; returns whether one came.
