@@ -152,6 +152,8 @@ pub struct Solver<const D: usize> {
     has_fluids: bool,
     /// Whether fluids meet other materials, in the default scheme (F6).
     has_meetings: bool,
+    /// rho_0 c of each material, where they differ (E8) [Pa s/m].
+    impedances: Vec<f64>,
     /// Whether a material is saturated.
     has_pores: bool,
     /// Whether what presses grain on grain, or rubs on a wall, is not the pressure of every particle.

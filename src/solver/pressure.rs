@@ -41,6 +41,16 @@ impl<const D: usize> Default for Prediction<D> {
     }
 }
 
+/// rho_0 c of each material; empty where it is the same for all [Pa s/m].
+pub(super) fn impedances(materials: &[Material], sound_speed: f64) -> Vec<f64> {
+    let of = |m: &Material| m.rest_density() * m.sound_speed.unwrap_or(sound_speed);
+    let all: Vec<f64> = materials.iter().map(of).collect();
+    if all.windows(2).all(|pair| pair[0] == pair[1]) {
+        return Vec::new();
+    }
+    all
+}
+
 impl<const D: usize> Solver<D> {
     /// 2 delta h/c of (E8) [s] at a sound speed [m/s] in acoustic steps of dt [s], (E8b): no more than evens a particle out with its neighbours, of whose pressures all are of
     /// the step's start. With more each goes past the others, and further every step.
@@ -200,9 +210,10 @@ impl<const D: usize> Solver<D> {
         });
     }
 
-    /// Whether pressure and the diffusion of density are all there is: no bulk friction, sliding rows, damping, or fluids.
+    /// Whether pressure and the diffusion of density are all there is: no bulk friction, sliding rows, damping, unlike materials, or fluids.
     fn is_plain(&self) -> bool {
         self.normal_pressure.is_empty()
+            && self.impedances.is_empty()
             && self.uneven_pressure.is_empty()
             && self.numerics.artificial_viscosity == 0.0
             && !self.has_fluids

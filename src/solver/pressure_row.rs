@@ -35,6 +35,9 @@ struct PressureRow<'s, L: Lanes, const D: usize, const PLAIN: bool> {
     /// alpha h c0 against all neighbours, and against those of its own kind [m^2/s].
     damp: f64,
     own_damping: f64,
+    /// Acoustic impedances of all materials, none where they are alike, and its own [Pa s/m].
+    impedances: &'s [f64],
+    impedance: f64,
     /// Whether it has no yield stress.
     flows: bool,
     /// Half the time that opens the diffusion's gate [s].
@@ -159,6 +162,11 @@ impl<'s, L: Lanes, const D: usize, const PLAIN: bool> PressureRow<'s, L, D, PLAI
             uneven: solver.uneven_pressure.get(i).filter(|_| !PLAIN),
             damp: numerics.artificial_viscosity * solver.kernel.h * c0,
             own_damping: solver.missing_viscosity(material) * solver.kernel.h * c0,
+            impedances: &solver.impedances,
+            impedance: solver
+                .impedances
+                .get(usize::from(state.grains.phase[i]))
+                .map_or(0.0, |z| *z),
             flows: solver.flows.get(i).is_some_and(|f| *f > 0.0),
             gate: splat(0.5 * numerics.diffusion_gate_time),
             head: 1.0 / (rho * solver.gravity_norm * numerics.spacing).max(f64::MIN_POSITIVE),
@@ -278,8 +286,21 @@ impl<'s, L: Lanes, const D: usize, const PLAIN: bool> PressureRow<'s, L, D, PLAI
         let loaded = (sum * self.splat(self.head)).min(one);
         let still = self.mean_rho(near) * down * loaded;
         let steep = (self.splat(self.pressure) - near.pressure) * (self.to_f() * near.g2 * near.c);
-        let change = open * (steep - still);
+        let mut change = open * (steep - still);
+        if !PLAIN && !self.impedances.is_empty() {
+            change = change * self.share_of_diffusion(near);
+        }
         self.diffusion += sum.where_greater(zero, change);
+    }
+
+    /// z_i/max(z_i, z_j): what pairs of unlike materials may diffuse without gaining energy (E8).
+    #[inline(always)]
+    fn share_of_diffusion(&self, near: &Near<'_, L, D>) -> Four<L> {
+        let phase = &self.state.grains.phase;
+        Four::gather(self.lanes, |m| {
+            let other = self.impedances[usize::from(phase[near.j[m] as usize])];
+            self.impedance / self.impedance.max(other)
+        })
     }
 
     /// What resists, of group n of a row with these kinds of neighbours. Returns c times the viscosity of pairs [Pa s m^2].

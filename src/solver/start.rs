@@ -15,7 +15,8 @@ use super::packing::Packing;
 use super::ring_sections::Moved;
 use super::wall_friction::Friction;
 use super::{
-    Plan, Scheme, Solver, StaysAwake, explicit, paper_a, paper_b, pore, rest, texture, turning,
+    Plan, Scheme, Solver, StaysAwake, explicit, paper_a, paper_b, pore, pressure, rest, texture,
+    turning,
 };
 
 /// What of a plan tells which stages and forms of sweeps its steps need; fields as in [`Solver`].
@@ -23,6 +24,7 @@ struct Needs {
     bulk_friction: bool,
     fluids: bool,
     meetings: bool,
+    impedances: Vec<f64>,
     pores: bool,
     effective_pressure: bool,
     lattice_sum: f64,
@@ -47,6 +49,7 @@ impl Needs {
         Self {
             bulk_friction: materials.iter().any(|m| m.bulk_friction > 0.0),
             fluids,
+            impedances: pressure::impedances(materials, numerics.sound_speed),
             meetings: numerics.scheme == Scheme::Implicit && fluids && materials.len() > 1,
             pores,
             effective_pressure: pores || (rubs && fluids),
@@ -101,6 +104,7 @@ impl<const D: usize> Solver<D> {
             has_bulk_friction: needs.bulk_friction,
             has_fluids: needs.fluids,
             has_meetings: needs.meetings,
+            impedances: needs.impedances,
             has_pores: needs.pores,
             has_effective_pressure: needs.effective_pressure,
             records: Vec::new(),

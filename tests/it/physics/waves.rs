@@ -61,3 +61,53 @@ fn a_tank_sloshes_on() {
     println!("kinetic energy of half periods: {peaks:.3?}");
     assert!(peaks[5] > 0.75 * peaks[0], "{peaks:?}");
 }
+
+/// Sound in layers whose densities differ by ten dies away: fed by the diffusion of density it grew to a fifth of the weight.
+#[test]
+fn layers_of_unlike_density_fall_silent() {
+    const LAYER: f64 = 0.06;
+    let text = format!(
+        r#"
+name = "silent"
+[domain]
+lower = [-0.05, -0.05]
+upper = [0.17, 0.3]
+[numerics]
+spacing = "6 mm"
+[materials.lower]
+law = "fluid"
+density = 1000
+consistency = 1e-3
+[materials.upper]
+law = "fluid"
+density = 100
+consistency = 1e-3
+[bodies.lower]
+material = "lower"
+box = {{ lower = [0, 0], upper = [0.12, {LAYER}] }}
+[bodies.upper]
+material = "upper"
+box = {{ lower = [0, {LAYER}], upper = [0.12, {}] }}
+[walls.tank]
+polyline = [[0, 0.25], [0, 0], [0.12, 0], [0.12, 0.25]]
+slip = "free_slip"
+[gauges.tank]
+kind = "force"
+on = "wall.tank"
+[run]
+step = "2 ms"
+until = 3
+"#,
+        2.0 * LAYER
+    );
+    let mut unit = Unit::new(&scene::parse("silent", &text).unwrap());
+    let weight = 9.81 * unit.get("mass.present");
+    unit.run_to(2.0);
+    let mut squares = 0.0;
+    for _ in 0..500 {
+        unit.step();
+        squares += (unit.get("gauge.tank.force_y") / weight + 1.0).powi(2) / 500.0;
+    }
+    println!("force swings by {:.2e} of the weight", squares.sqrt());
+    assert!(squares.sqrt() < 1e-3, "{}", squares.sqrt());
+}
