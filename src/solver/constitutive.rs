@@ -98,6 +98,7 @@ impl<const D: usize> Solver<D> {
         let scaled = responses.iter().zip(scales).map(|(r, s)| r.viscosity * s);
         self.pair_viscosity.extend(scaled);
         self.responses = responses;
+        self.weigh_turning(state);
     }
 
     /// Viscosity, inertial number and bulk friction at the pressure p between grains: [A] eqs. 6, 7 with the cap.

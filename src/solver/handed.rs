@@ -23,7 +23,7 @@ pub struct Handed<const D: usize> {
 struct Borne<const D: usize> {
     /// tau [Pa].
     stress: Vec<Tensor<D>>,
-    /// What (T1) adds between grains [Pa]; empty in scenes without.
+    /// What (T1) adds [Pa]; empty in scenes without.
     turned: Vec<Tensor<D>>,
 }
 
@@ -96,9 +96,9 @@ impl<const D: usize> Solver<D> {
             &scale(m, &along(&borne.stress, i)),
             &scale(2.0 - m, &along(&borne.stress, j)),
         );
-        if !borne.turned.is_empty() && !own.is_fluid() && !other.is_fluid() {
-            let turned = add(&along(&borne.turned, i), &along(&borne.turned, j));
-            force = add(&force, &turned);
+        if !borne.turned.is_empty() {
+            let (own, other) = (along(&borne.turned, i), along(&borne.turned, j));
+            force = add(&force, &add(&scale(m, &own), &scale(2.0 - m, &other)));
         }
         if !(is_default && own.is_newtonian() && other.is_newtonian()) {
             return force;

@@ -118,7 +118,7 @@ impl<const D: usize> Solver<D> {
             let sees_walls = self.add_walls::<FLUIDS>(state, (i, row), block, near, &mut sums);
             let phase = state.grains.phase[i];
             if !self.turns.is_empty() {
-                let alone = near.are_like() && !sees_walls;
+                let alone = !near.have_harder() && !sees_walls;
                 block.turning.push(self.turn(&mut sums, phase, alone));
             }
             *o = self.finish(&sums, phase, i, v);

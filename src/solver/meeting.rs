@@ -46,10 +46,10 @@ impl Neighbours<'_> {
         self.all.as_chunks::<LANES>().0
     }
 
-    /// Whether all are of the first kind.
+    /// Whether there are grains among them, and they are a fluid's.
     #[inline(always)]
-    pub(super) fn are_like(&self) -> bool {
-        self.kinds[LIKE as usize] == self.groups().len()
+    pub(super) fn have_harder(&self) -> bool {
+        self.kinds[OTHER as usize] < self.kinds[HARDER as usize]
     }
 
     /// Whether there are fluids among them, and they are a grain's.

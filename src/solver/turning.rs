@@ -8,16 +8,23 @@
 //! P is an orthogonal projection, so that the force of sigma stays minus the adjoint of e: the matrix of (E9) stays symmetric and positive,
 //! momentum is kept, and angular momentum, too, since sigma M is symmetric. Where M is the identity P A is the skew part of A.
 //!
-//! For what has strength without pressure, away from walls and other materials. Sand without cohesion has no stress where it is loose, and
+//! Between materials G and M have the weights m_ij of `meeting`, and the force of sigma those of the force of tau: grains turn among a fluid as in air.
+//!
+//! For what has strength without pressure, away from walls and from what is as one to it (grains beside a fluid). Sand without cohesion has no stress where it is loose, and
 //! in a surface that flows shear stress would be up to 1.2 of friction times the pressure that goes through the same sums.
 //!
 //! Symbols: G velocity gradient (E1), M moment (E2), W skew, tau stress, g_ij = V_j grad W_ij.
 
+use std::ops::Range;
+
 use crate::material::Material;
-use crate::math::{Four, Geometry, Lanes, Tensor, Vector, apply, inverse, multiply, trace};
+use crate::math::{
+    Four, Geometry, Lanes, Tensor, Vector, apply, in_lanes, inverse, multiply, trace,
+};
 use crate::state::State;
 
 use super::fluid_row::Row;
+use super::meeting::share;
 use super::pair::Block;
 use super::record::Record;
 use super::{Numerics, Rotation, Scheme, Solver};
@@ -46,15 +53,79 @@ pub(super) fn who_turns(
 }
 
 impl<const D: usize> Solver<D> {
-    /// Takes from a row's gradient what a rigid rotation has, if (T1) is for it; M of the row then, else 0. `alone`: it sees no wall and no
-    /// other material.
+    /// Takes from a row's gradient what a rigid rotation has, if (T1) is for it; M of the row then, else 0. `alone`: it sees no wall, of
+    /// points or of grains.
     pub(super) fn turn(&self, sums: &mut Row<D>, phase: u8, alone: bool) -> Tensor<D> {
         if !(alone && self.turns[phase as usize]) {
             return [[0.0; D]; D];
         }
-        let rigid = rigid_part(&sums.moment, &sums.gradient);
-        take(&mut sums.gradient, &rigid);
-        sums.moment
+        let mut gradient = sums.gradient;
+        for (row, images) in gradient.iter_mut().zip(&sums.images) {
+            for (g, image) in row.iter_mut().zip(images) {
+                *g += image;
+            }
+        }
+        let mut moment = sums.moment;
+        take(&mut moment, &sums.softer);
+        take(&mut sums.gradient, &rigid_part(&moment, &gradient));
+        moment
+    }
+
+    /// M of fluids beside other fluids with the weights that the solve's G has there, from this step's viscosities.
+    pub(super) fn weigh_turning(&mut self, state: &State<D>) {
+        if self.turns.is_empty() || !self.has_meetings {
+            return;
+        }
+        let mut turning = std::mem::take(&mut self.turning);
+        self.workers
+            .blocks_read(&self.lists.blocks, &mut turning, |block, first, out| {
+                in_lanes!(
+                    self.arch,
+                    |lanes| for (row, o) in out.iter_mut().enumerate() {
+                        let [like, other, ..] = block.kinds(row);
+                        if !other.is_empty() && *o != [[0.0; D]; D] {
+                            *o = self.weighed_moment(
+                                lanes,
+                                state,
+                                block,
+                                first + row,
+                                [like, other],
+                            );
+                        }
+                    }
+                );
+            });
+        self.turning = turning;
+    }
+
+    /// -sum_j m_ij x_ij (x) g_ij over neighbours of the first two kinds.
+    #[inline(always)]
+    fn weighed_moment<L: Lanes>(
+        &self,
+        lanes: L,
+        state: &State<D>,
+        block: &Block<D>,
+        i: usize,
+        [like, other]: [Range<usize>; 2],
+    ) -> Tensor<D> {
+        let x = &state.grains.position;
+        let mut sums = [[Four::splat(lanes, 0.0); D]; D];
+        for n in like.start..other.end {
+            let j = &block.j[n];
+            let away = j.map(|j| self.periodic.difference(&x[i], &x[j as usize]));
+            let mut m = Four::splat(lanes, 1.0);
+            if n >= other.start {
+                let eta = Four::gather(lanes, |m| self.viscosity[j[m] as usize]);
+                m = share(lanes, Four::splat(lanes, self.viscosity[i]), eta);
+            }
+            for a in 0..D {
+                let x = m * Four::gather(lanes, |m| away[m][a]);
+                for b in 0..D {
+                    sums[a][b] -= x * Four::load(lanes, &block.g[n][b]);
+                }
+            }
+        }
+        sums.map(|row| row.map(Four::sum))
     }
 
     /// Gathers M of every particle after a sweep; nothing in scenes that do without.
@@ -89,28 +160,43 @@ impl<const D: usize> Solver<D> {
     }
 }
 
-/// f += sum_j (t_i + t_j) g_ij over the first kind of a row's neighbours.
-#[inline(always)]
-pub(super) fn add_turned_force<L: Lanes, const D: usize>(
-    lanes: L,
-    block: &Block<D>,
-    (row, i): (usize, usize),
-    t: &[Tensor<D>],
-    f: &mut Vector<D>,
-) {
-    let mut sums = [Four::splat(lanes, 0.0); D];
-    let [like, ..] = block.kinds(row);
-    for (j, g) in block.j[like.clone()].iter().zip(&block.g[like]) {
-        for b in 0..D {
-            let g = Four::load(lanes, &g[b]);
-            for a in 0..D {
-                let both = Four::gather(lanes, |m| t[i][a][b] + t[j[m] as usize][a][b]);
-                sums[a] += both * g;
+impl<const D: usize> Solver<D> {
+    /// f += sum_j (m_ij t_i + m_ji t_j) g_ij. What sees grains as a wall has no t, and to grains what a fluid has counts nothing.
+    #[inline(always)]
+    pub(super) fn add_turned_force<L: Lanes>(
+        &self,
+        lanes: L,
+        block: &Block<D>,
+        (row, i): (usize, usize),
+        t: &[Tensor<D>],
+        f: &mut Vector<D>,
+    ) {
+        let mut sums = [Four::splat(lanes, 0.0); D];
+        let [like, other, ..] = block.kinds(row);
+        for (j, g) in block.j[like.clone()].iter().zip(&block.g[like]) {
+            for b in 0..D {
+                let g = Four::load(lanes, &g[b]);
+                for a in 0..D {
+                    let both = Four::gather(lanes, |m| t[i][a][b] + t[j[m] as usize][a][b]);
+                    sums[a] += both * g;
+                }
             }
         }
-    }
-    for k in 0..D {
-        f[k] += sums[k].sum();
+        for (j, g) in block.j[other.clone()].iter().zip(&block.g[other]) {
+            let eta = Four::gather(lanes, |m| self.viscosity[j[m] as usize]);
+            let own = share(lanes, Four::splat(lanes, self.viscosity[i]), eta);
+            let others = Four::splat(lanes, 2.0) - own;
+            for b in 0..D {
+                let g = Four::load(lanes, &g[b]);
+                for a in 0..D {
+                    let far = Four::gather(lanes, |m| t[j[m] as usize][a][b]);
+                    sums[a] += (own * Four::splat(lanes, t[i][a][b]) + others * far) * g;
+                }
+            }
+        }
+        for k in 0..D {
+            f[k] += sums[k].sum();
+        }
     }
 }
 

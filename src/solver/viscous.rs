@@ -16,7 +16,6 @@ use super::mirror::{add_image_gradient, image_drag, image_force};
 use super::pair::{Block, WallRow};
 use super::record::{Record, Stresses, stresses};
 use super::reflect::{add_reflected_gradient, reflected_drag, reflected_force};
-use super::turning::add_turned_force;
 
 impl<const D: usize> Solver<D> {
     /// Records of v_i and tau_i = 2 (1 - share) eta_i e_i(v); tau_i = 0 for the rows that `skipped` names, if it is not empty.
@@ -133,7 +132,7 @@ impl<const D: usize> Solver<D> {
                             self.row_force::<_, false>(lanes, block, row, i, records)
                         };
                         if !turned.is_empty() {
-                            add_turned_force(lanes, block, (row, i), &turned, &mut f);
+                            self.add_turned_force(lanes, block, (row, i), &turned, &mut f);
                         }
                         let own = &records[i];
                         if self.geometry.is_axisymmetric() {
