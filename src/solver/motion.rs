@@ -6,6 +6,10 @@ use crate::state::State;
 use super::outputs::three;
 use super::{Solver, SolverError};
 
+/// How far beyond the domain a particle may be, over the spacing: as far as boxes and sections that end on a wall's face reach behind it.
+/// What a wall on the domain's side holds under tension may be drawn into its face by some hundredths.
+const SLACK: f64 = 0.25;
+
 impl<const D: usize> Solver<D> {
     /// v and x to the end of the step (symplectic Euler; `last` is its last acoustic step), and what diffusion and shifting do to
     /// density before lists may reorder rows.
@@ -70,10 +74,15 @@ impl<const D: usize> Solver<D> {
     pub(super) fn keep_inside(&self, state: &mut State<D>) -> Result<(), SolverError> {
         let grains = &mut state.grains;
         self.wrap(&mut grains.position);
+        let slack = SLACK * self.numerics.spacing;
+        let rings = self.geometry.is_axisymmetric();
         let is_lost = |i: usize| {
             let x = &grains.position[i];
             let inside = (0..D).all(|k| {
-                self.periodic.length[k] > 0.0 || (x[k] >= self.lower[k] && x[k] <= self.upper[k])
+                // Rings have no place behind their axis.
+                let below = if k == 0 && rings { 0.0 } else { slack };
+                self.periodic.length[k] > 0.0
+                    || (x[k] >= self.lower[k] - below && x[k] <= self.upper[k] + slack)
             });
             !inside && !grains.drained[i]
         };

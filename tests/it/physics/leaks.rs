@@ -270,3 +270,41 @@ fn the_foot_of_a_block_bears_what_is_pushed_on_it() {
     assert!((block / -thrust - 1.0).abs() < 0.015, "{block} N");
     assert!(floor.abs() < 0.01 * thrust, "{floor} N");
 }
+
+/// A wall whose face is the domain's side: mud that sinks away from it is drawn a little into it, and cohesive sand, and neither is lost.
+#[test]
+fn what_a_wall_on_the_domains_side_holds_is_not_lost() {
+    for keys in [
+        "law = \"fluid\"\npreset = \"clay\"",
+        "law = \"mu_i\"\npreset = \"sand_04\"\ncohesion = 200",
+    ] {
+        let text = format!(
+            r#"
+name = "flush"
+[domain]
+lower = [0, 0]
+upper = [0.6, 0.6]
+[numerics]
+spacing = "5 mm"
+[materials.mud]
+{keys}
+[bodies.block]
+material = "mud"
+box = {{ lower = [0, 0], upper = [0.1, 0.15] }}
+[walls.floor]
+polyline = [[0, 0.5], [0, 0], [0.6, 0]]
+[run]
+step = "20 ms"
+until = 0.3
+"#
+        );
+        let scene = sandgate::scene::parse("flush", &text).unwrap();
+        let mut unit = super::Unit::new(&scene);
+        unit.run_to(0.3);
+        let particles = unit.component.particles();
+        let least = particles.position.iter().map(|x| x[0]);
+        let least = least.fold(f32::MAX, f32::min);
+        println!("{least} m");
+        assert!(least > -0.25 * 0.005);
+    }
+}
