@@ -90,6 +90,25 @@ impl std::fmt::Display for Failure {
     }
 }
 
+/// Logs to give instead of the folder that they are in.
+fn one_of(logs: &[PathBuf]) -> String {
+    const SHOWN: usize = 5;
+    if logs.is_empty() {
+        return "a log that a run, an FMU or a component on the bus wrote; there is none in it"
+            .to_owned();
+    }
+    let named: Vec<_> = logs
+        .iter()
+        .take(SHOWN)
+        .map(|l| l.display().to_string())
+        .collect();
+    let more = match logs.len().saturating_sub(SHOWN) {
+        0 => String::new(),
+        n => format!(" or one of {n} more"),
+    };
+    named.join(" or ") + &more
+}
+
 /// Errors of reading a log. A log that was cut short is not an error: see [`Ending`](super::Ending).
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
@@ -101,10 +120,21 @@ pub enum ReadError {
         /// Why.
         source: std::io::Error,
     },
+    /// It is a folder, which may hold logs.
+    #[error(
+        "cannot read log {path}: found a folder, allowed a file; give {}",
+        one_of(logs)
+    )]
+    Folder {
+        /// What was given.
+        path: PathBuf,
+        /// Logs in it, in order of their names.
+        logs: Vec<PathBuf>,
+    },
     /// It is no file whose end can be looked at first.
     #[error(
-        "cannot read log {path}: found a folder, pipe or device, allowed a file, which is read from both ends; write what \
-         comes through a pipe to a file first (`cat > run.mcap`) and give that"
+        "cannot read log {path}: found a pipe or device, allowed a file, which is read from both ends; write what comes \
+         through a pipe to a file first (`cat > run.mcap`) and give that"
     )]
     NotAFile {
         /// What was given.

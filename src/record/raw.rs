@@ -124,6 +124,12 @@ impl RawReader {
         };
         let file = File::open(path).map_err(io)?;
         let metadata = file.metadata().map_err(io)?;
+        if metadata.is_dir() {
+            return Err(ReadError::Folder {
+                path: path.to_owned(),
+                logs: logs_in(path),
+            });
+        }
         if !metadata.is_file() {
             return Err(ReadError::NotAFile {
                 path: path.to_owned(),
@@ -331,6 +337,18 @@ impl RawReader {
         }
         None
     }
+}
+
+/// Logs in a folder, finished or not, in order of their names; none if it cannot be looked into.
+fn logs_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_log = |path: &PathBuf| {
+        let name = path.to_string_lossy();
+        name.ends_with(".mcap") || name.ends_with(".mcap.part")
+    };
+    let mut logs: Vec<_> = entries.map(|e| e.path()).filter(is_log).collect();
+    logs.sort();
+    logs
 }
 
 impl Iterator for RawReader {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::{Choice, warn_unless_complete};
-use crate::cli::{CliError, cannot_print};
+use crate::cli::{CliError, cannot_print, printable};
 use crate::record::{JsonReader, RawChannel, RawEntry, RawMessage, RawReader, below_base};
 use crate::wire::keys::VERBS;
 
@@ -55,7 +55,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         let line = if args.json {
             as_json(&message, value).to_string()
         } else {
-            as_text(&message, &value)
+            printable(&as_text(&message, &value)).into_owned()
         };
         writeln!(out, "{line}").map_err(cannot_print)?;
         printed += 1;
@@ -126,20 +126,15 @@ fn words(message: &RawMessage, value: &Value) -> String {
             format!("{values} {}{flag}", text("unit"))
         }
         "sandgate.Applied" => {
-            let inputs = value["inputs"].as_array().into_iter().flatten();
-            let inputs = inputs.map(|input| {
-                let by = input["source"].as_str().unwrap_or_default();
-                let name = input["name"].as_str().unwrap_or_default();
-                format!("  {name} = {} by {by:?}", input["values"])
-            });
             format!(
-                "{} {} at t = {}, h = {}, by {:?}{}",
+                "{} {} at t = {}, h = {}, by {:?}{}{}",
                 text("event").to_lowercase(),
                 value["step"],
                 value["t"],
                 value["h"],
                 text("source"),
-                inputs.collect::<String>()
+                inputs_of(value),
+                moments_of(value)
             )
         }
         "sandgate.Command" => {
@@ -167,6 +162,39 @@ fn words(message: &RawMessage, value: &Value) -> String {
     }
 }
 
+/// What was set by a call, or at a moment of it.
+fn inputs_of(value: &Value) -> String {
+    let inputs = value["inputs"].as_array().into_iter().flatten();
+    let inputs = inputs.map(|input| {
+        let by = input["source"].as_str().unwrap_or_default();
+        let name = input["name"].as_str().unwrap_or_default();
+        let slope = match input["slope"].as_bool() {
+            Some(true) => " changing per second by",
+            _ => " =",
+        };
+        format!("  {name}{slope} {} by {by:?}", input["values"])
+    });
+    inputs.collect()
+}
+
+/// What was done inside a step, at which times.
+fn moments_of(value: &Value) -> String {
+    let time = |bits: &Value| f64::from_bits(bits.as_u64().unwrap_or_default());
+    let moments = value["moments"].as_array().into_iter().flatten();
+    let moments = moments.map(|moment| {
+        let end = match moment["ends"].as_bool() {
+            Some(true) => format!("  to end at t = {}", time(&moment["end_bits"])),
+            _ => String::new(),
+        };
+        format!(
+            "  inside it, at t = {}:{}{end}",
+            time(&moment["t_bits"]),
+            inputs_of(moment)
+        )
+    });
+    moments.collect()
+}
+
 /// Fields and their values, without the time, which stands before them.
 fn plain(value: &Value) -> String {
     let fields = value.as_object().into_iter().flatten();
@@ -178,4 +206,29 @@ fn plain(value: &Value) -> String {
         })
         .collect();
     parts.join("  ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_set_says_whether_it_is_a_slope_and_when_inside_a_step() {
+        let opening = |values: f64, slope: bool| json!({"name": "gate.a.opening", "values": [values], "slope": slope, "source": "fmi3"});
+        let applied = json!({
+            "inputs": [opening(0.05, false), opening(4.0, true)],
+            "moments": [
+                {"t_bits": 0.25_f64.to_bits(), "inputs": [opening(0.5, false)], "ends": false, "end_bits": 0},
+                {"t_bits": 0.5_f64.to_bits(), "inputs": [], "ends": true, "end_bits": 0.75_f64.to_bits()},
+            ],
+        });
+        assert_eq!(
+            inputs_of(&applied),
+            "  gate.a.opening = [0.05] by \"fmi3\"  gate.a.opening changing per second by [4.0] by \"fmi3\""
+        );
+        assert_eq!(
+            moments_of(&applied),
+            "  inside it, at t = 0.25:  gate.a.opening = [0.5] by \"fmi3\"  inside it, at t = 0.5:  to end at t = 0.75"
+        );
+    }
 }

@@ -115,7 +115,7 @@ fn run_line(run: &BTreeMap<String, String>) -> String {
         _ => "",
     };
     format!(
-        "{} as {}, sandgate {}, seed {}, {}, communication step {} s{deterministic}",
+        "{} as {}, sandgate {}, seed {}, {}, the scene's communication step {} s{deterministic}",
         get("scene"),
         get("instance"),
         get("version"),

@@ -22,7 +22,7 @@ pub(super) struct Args {
     /// A log file
     file: PathBuf,
     /// Simulated over wall time, or inf for as fast as possible
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = quantity::speed)]
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = quantity::speed, allow_hyphen_values = true)]
     speed: f64,
     /// Begin again at the end, until Ctrl-C
     #[arg(long = "loop")]

@@ -57,7 +57,7 @@ fn fill(log: &Path, folder: &Path, window: &Window) -> Result<(String, Ending), 
                 if !(stands && window.has(log_time)) {
                     continue;
                 }
-                let (time, number) = (log_time as f64 / 1e9, particles.len());
+                let (time, number) = (time_of(&cloud, log_time), particles.len());
                 let name = format!("particles-{number:06}.vtp");
                 save(&folder.join(&name), &particle_data(&cloud))?;
                 particles.push((time, name));
@@ -92,6 +92,13 @@ fn fill(log: &Path, folder: &Path, window: &Window) -> Result<(String, Ending), 
         );
     }
     Ok((line, reader.ending().cloned().unwrap_or_default()))
+}
+
+/// Simulated time of a snapshot [s]: its own stamp, since a message's log time is 0 before 0.
+fn time_of(cloud: &PointCloud, log_time: u64) -> f64 {
+    let own = cloud.timestamp.as_ref();
+    let own = own.map(|t| i128::from(t.seconds) * 1_000_000_000 + i128::from(t.nanos));
+    own.unwrap_or(i128::from(log_time)) as f64 / 1e9
 }
 
 /// Points, cells over them, and values of either.

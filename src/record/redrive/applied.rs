@@ -50,6 +50,11 @@ impl Run {
                     Ok(report) => report,
                     Err(error) => return Ok(refused("this step", error)),
                 };
+                let inside = applied
+                    .moments
+                    .iter()
+                    .map(|moment| moment.inputs.len() as u64);
+                self.done.inputs += inside.sum::<u64>();
                 self.done.steps += 1;
                 self.report = Some(report);
                 if let Some(recorder) = &mut self.recorder {

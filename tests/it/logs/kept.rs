@@ -18,6 +18,10 @@ struct Run {
 
 impl Run {
     fn start(path: &Path, particles_every: f64) -> Self {
+        Self::start_at(path, particles_every, 0.0)
+    }
+
+    fn start_at(path: &Path, particles_every: f64, start: f64) -> Self {
         let scene = scene::load(&python::root().join(SCENE)).unwrap();
         let mut component = Component::new(&scene).unwrap();
         let options = RecordOptions {
@@ -25,9 +29,9 @@ impl Run {
             ..RecordOptions::of(&component)
         };
         let mut recorder = Recorder::create(path, &component, options).unwrap();
-        component.initialize(0.0, None).unwrap();
+        component.initialize(start, None).unwrap();
         recorder
-            .record_initialization(&component, 0.0, None, "test")
+            .record_initialization(&component, start, None, "test")
             .unwrap();
         Self {
             component,
@@ -161,14 +165,34 @@ fn pictures_have_one_snapshot_a_time_where_each_step_is_tried_three_times() {
     let openings = table.lines().skip(1).map(|line| line.split(',').nth(1));
     assert_eq!(openings.skip(1).collect::<Vec<_>>(), [Some("0.5"); 4]);
     for list in ["particles.pvd", "walls.pvd"] {
-        let text = String::from_utf8(files[list].clone()).unwrap();
-        let times = text.split("timestep=\"").skip(1);
-        let times: Vec<f64> = times
-            .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
-            .collect();
+        let times = times_in(&files[list]);
         assert_eq!(times.len(), 5, "{list}: {times:?}");
         assert!(times.is_sorted_by(|a, b| a < b), "{list}: {times:?}");
     }
+}
+
+/// Times of a collection of pictures [s].
+fn times_in(list: &[u8]) -> Vec<f64> {
+    let text = std::str::from_utf8(list).unwrap();
+    let times = text.split("timestep=\"").skip(1);
+    times
+        .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
+        .collect()
+}
+
+/// Messages before 0 have 0 as their time in the file, pictures their own.
+#[test]
+fn pictures_of_a_run_that_starts_before_0_have_their_own_times() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let path = folder.path().join("before.mcap");
+    let mut run = Run::start_at(&path, H, -2.0 * H);
+    run.steps(3, 0.0);
+    run.finish();
+    let (_, files) = exported(&path);
+    assert_eq!(
+        times_in(&files["particles.pvd"]),
+        [-0.01, -0.005, 0.0, 0.005]
+    );
 }
 
 #[test]

@@ -246,9 +246,20 @@ fn bytes_behind_the_end_are_told_and_are_no_part_of_the_log() {
 
 #[test]
 fn what_is_no_file_is_refused_with_what_to_do() {
-    for path in ["/dev/zero", "."] {
-        let said = Survey::of(Path::new(path)).unwrap_err().to_string();
-        assert!(said.contains("found a folder, pipe or device"), "{said}");
-        assert!(said.contains("`cat > run.mcap`"), "{said}");
+    let said = |path: &Path| Survey::of(path).unwrap_err().to_string();
+    let device = said(Path::new("/dev/zero"));
+    assert!(device.contains("found a pipe or device"), "{device}");
+    assert!(device.contains("`cat > run.mcap`"), "{device}");
+    // A folder of results tells which of its files are meant.
+    let folder = temp_dir::TempDir::new().unwrap();
+    let none = said(folder.path());
+    assert!(none.contains("found a folder"), "{none}");
+    assert!(none.contains("there is none in it"), "{none}");
+    for name in ["run.mcap", "run-2.mcap.part", "gauges.csv"] {
+        std::fs::write(folder.path().join(name), "").unwrap();
     }
+    let two = said(folder.path());
+    let named = |name: &str| folder.path().join(name).display().to_string();
+    let give = format!("give {} or {}", named("run-2.mcap.part"), named("run.mcap"));
+    assert!(two.ends_with(&give), "{two}");
 }
