@@ -29,6 +29,7 @@ mod stress;
 mod threads;
 mod validate;
 
+use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -131,7 +132,7 @@ fn load_scene(path: &Path) -> Result<Scene, CliError> {
 fn say(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     let done = out
-        .write_all(text.as_bytes())
+        .write_all(printable(text).as_bytes())
         .and_then(|()| out.write_all(b"\n"))
         .and_then(|()| out.flush());
     match done.map_err(cannot_print) {
@@ -142,7 +143,20 @@ fn say(text: &str) -> Result<(), CliError> {
 
 /// See `tell!`.
 fn tell_line(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", printable(text));
+}
+
+/// Text without what would steer the terminal: titles, names and messages may be those of somebody else's scene or log. Lines and tabs stay.
+pub(in crate::cli) fn printable(text: &str) -> Cow<'_, str> {
+    let steers = |c: char| {
+        c.is_control() && !matches!(c, '\n' | '\t')
+            || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    if text.contains(steers) {
+        Cow::Owned(text.replace(steers, "\u{fffd}"))
+    } else {
+        Cow::Borrowed(text)
+    }
 }
 
 /// What a failed write to standard output means.
@@ -155,5 +169,20 @@ fn cannot_print(source: std::io::Error) -> CliError {
             source,
             remedy: "see where the output of this command goes",
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::printable;
+
+    #[test]
+    fn what_would_steer_the_terminal_is_not_printed() {
+        let title = "\u{1b}[2JSilo\u{7}, \u{202e}olis\r\nline\ttab";
+        assert_eq!(
+            printable(title),
+            "\u{fffd}[2JSilo\u{fffd}, \u{fffd}olis\u{fffd}\nline\ttab"
+        );
+        assert_eq!(printable("µ(I), 5 °"), "µ(I), 5 °");
     }
 }

@@ -21,6 +21,9 @@ const WIDTH: u32 = 1100;
 const PANEL: u32 = 210;
 const TITLE: u32 = 44;
 const LEGEND: u32 = 280;
+/// As many letters as fit beside a legend's line, and into the title's.
+const LEGEND_LETTERS: usize = 38;
+const TITLE_LETTERS: usize = 100;
 /// More curves than this in one panel cannot be told apart.
 const MOST_CURVES: usize = 6;
 /// Okabe and Ito's colours: also told apart by colour-blind readers.
@@ -51,7 +54,7 @@ pub(super) fn svg(title: &str, series: &Series) -> Result<String, Failed> {
         root.fill(&WHITE)?;
         let (head, body) = root.split_vertically(TITLE);
         // XML has no control characters.
-        let title = title.replace(char::is_control, " ");
+        let title = shortened(&title.replace(char::is_control, " "), TITLE_LETTERS);
         head.draw(&Text::new(title, (16, 14), ("sans-serif", 20)))?;
         if count == 0 {
             let text = "this case has no gauges, gates, inflows or outflows to draw";
@@ -111,10 +114,24 @@ fn draw_panel(area: &Area, panel: &Panel, series: &Series) -> Result<(), Failed>
         let line = vec![(6, y + 6), (30, y + 6)];
         legend.draw(&PathElement::new(line, style))?;
         let suffix = if column.is_input { " (input)" } else { "" };
-        let text = format!("{}{suffix}", column.name);
+        let text = shortened(&format!("{}{suffix}", column.name), LEGEND_LETTERS);
         legend.draw(&Text::new(text, (38, y), ("sans-serif", 13)))?;
     }
     Ok(())
+}
+
+/// Text of at most so many letters, without its middle if it has more: names of one panel begin alike or end alike.
+fn shortened(text: &str, most: usize) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    if letters.len() <= most {
+        return text.to_owned();
+    }
+    let tail = (most - 1) / 2;
+    let (head, tail) = (
+        &letters[..most - 1 - tail],
+        &letters[letters.len() - tail..],
+    );
+    head.iter().chain(&['…']).chain(tail).collect()
 }
 
 /// Empty axes with titles of x and y.
@@ -248,5 +265,19 @@ mod tests {
         assert_eq!((thin.first(), thin.last()), (curve.first(), curve.last()));
         let short = curve[..100].to_vec();
         assert_eq!(thinned(short.clone(), 1e3), short);
+    }
+
+    #[test]
+    fn long_names_of_one_device_stay_apart() {
+        let [x, y] = ["x", "y"].map(|k| {
+            shortened(
+                &format!("gauge.force_on_left_tank_wall_and_floor.force_{k}"),
+                38,
+            )
+        });
+        assert_eq!(x, "gauge.force_on_left…_and_floor.force_x");
+        assert_ne!(x, y);
+        assert_eq!(shortened("gauge.level.depth", 38), "gauge.level.depth");
+        assert_eq!(shortened("µ".repeat(39).as_str(), 38).chars().count(), 38);
     }
 }

@@ -68,7 +68,7 @@ function span(lists) {
   return [low === 0 ? 0 : low - pad, high + pad];
 }
 
-// A chart of series {name, values} that share a unit.
+// A chart of series {name, values} that share a unit; what is held over a step, as inputs are, is drawn from the step's start.
 function chart(parent, title, unit, series, note = "") {
   const box = element(parent, "div", { class: "chart" });
   element(box, "h3", {}, title);
@@ -100,7 +100,8 @@ function chart(parent, title, unit, series, note = "") {
     let path = "", pen = "M";
     s.values.forEach((v, i) => {
       if (v === null) { pen = "M"; return; }
-      path += `${pen}${x(times[i]).toFixed(2)} ${y(v).toFixed(2)}`;
+      const from = s.held && i > 0 ? `${pen}${x(times[i - 1]).toFixed(2)} ${y(v).toFixed(2)}L` : pen;
+      path += `${from}${x(times[i]).toFixed(2)} ${y(v).toFixed(2)}`;
       pen = "L";
     });
     drawn(svg, "path", { class: "curve", d: path, style: `stroke: ${colour(k)}`, "vector-effect": "non-scaling-stroke" });

@@ -39,7 +39,7 @@ function devices() {
     if (!["gauge", "gate", "inflow", "outflow"].includes(kind) || column.flag) continue;
     const key = `${kind}.${device} ${column.unit}`;
     if (!groups.has(key)) groups.set(key, { title: `${kind}.${device}`, unit: column.unit, series: [] });
-    groups.get(key).series.push({ name: column.name.slice(`${kind}.${device}.`.length) + (column.input ? " (input)" : ""), values: column.values });
+    groups.get(key).series.push({ name: column.name.slice(`${kind}.${device}.`.length) + (column.input ? " (input)" : ""), values: column.values, held: column.input });
   }
   const box = document.querySelector("#devices .charts");
   for (const group of groups.values()) {
