@@ -78,8 +78,8 @@ impl Page {
         self.line("");
         self.line("Points and vectors are `[x, y]` where dimension = 2 (y is up) and `[x, y, z]` where dimension = 3 (z is up).");
         self.line("The *left* of a way from one point to another is the left of a walker who looks along it with z up.");
-        self.line("Names (NAME below) are lower-case letters, digits and `_`. Keys in **bold** are required.");
-        self.line("A file with problems is refused, all of them reported at once, each with its line and what to do.");
+        self.line("Names (NAME below) are lower-case letters, digits and `_`, begin with a letter and have at most 48 characters. Keys in **bold** are required.");
+        self.line("A file has at most 4 MiB. One with problems is refused, all of them reported at once, each with its line and what to do.");
     }
 
     fn root(&mut self, schema: &Value) {

@@ -27,7 +27,6 @@ mod full_disk;
 mod gauges;
 #[cfg(feature = "record")]
 mod host_process;
-mod json_schema;
 mod licenses;
 #[cfg(all(feature = "record", feature = "cli"))]
 mod logs;

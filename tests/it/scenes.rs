@@ -416,33 +416,11 @@ fn walk(value: &Value, visit: &mut impl FnMut(&serde_json::Map<String, Value>)) 
     }
 }
 
+#[cfg(feature = "cli")]
 #[test]
 fn every_case_meets_the_schema_and_wrong_ones_do_not() {
-    let schema: Value = serde_json::from_str(&scene::schema()).unwrap();
-    let cases = toml_files("cases").into_iter();
-    let papers = toml_files("cases/paper_a").into_iter();
-    for path in cases.chain(papers).chain(toml_files("cases/paper_b")) {
-        let text = fs::read_to_string(&path).unwrap();
-        let read = |text: &str| {
-            let table: toml::Table = text.parse().unwrap();
-            serde_json::to_value(table).unwrap()
-        };
-        let problems = super::json_schema::check(&schema, &read(&text));
-        assert!(problems.is_empty(), "{}: {problems:#?}", path.display());
-        for (from, to) in [
-            ("spacing = ", "spacign = "),
-            ("dimension = ", "dimension = 1 # "),
-            ("law = \"", "law = \"no_"),
-            ("[run]", "[run]\nuntill = 3"),
-            ("name = ", "nome = "),
-            ("[log]", "[log]\nrequired = \"yes\""),
-        ] {
-            assert!(text.contains(from), "{from}");
-            let value = read(&text.replacen(from, to, 1));
-            let problems = super::json_schema::check(&schema, &value);
-            assert!(!problems.is_empty(), "{}: {to} passes", path.display());
-        }
-    }
+    let program = std::ffi::OsStr::new(env!("CARGO_BIN_EXE_sandgate"));
+    crate::python::pytest("test_scene_schema.py", &[("SANDGATE", program)]);
 }
 
 /// A small generator (splitmix64), so that the mutations are the same on every machine.

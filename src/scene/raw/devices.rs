@@ -17,11 +17,11 @@ choice! {
 table! {
     /// A wall. Exactly one of polyline, circle, box and plane says where.
     RawWall {
-        /// Planar: a chain of points with the material on its left; the wall lies on its right, four particle rows deep.
+        /// Planar: a chain of 2 to 1,000 points with the material on its left; the wall lies on its right, four particle rows deep.
         optional polyline: List<Coordinates<Length>>;
         /// Whether the polyline's last point joins the first.
         optional closed: Flag;
-        /// Planar: a round wall with the material inside, a drum.
+        /// Planar: a round wall with the material inside, a drum, of 4 to 300 spacings in radius.
         optional circle: RawCircle;
         /// A solid box, an obstacle. Thinner than 4 spacings it is too little wall: force gauges on it read up to two fifths too little.
         optional r#box: RawBox;
@@ -89,7 +89,7 @@ table! {
         optional span: Coordinates<Length>;
         /// Velocity of entering material; it points to the left of the way from `from` to `to` (in space: along (to - from) x span).
         required velocity: Coordinates<Speed>;
-        /// Rate at the start.
+        /// Rate at the start; at most what the face lets in at that velocity, the density times its area times the velocity across it.
         optional rate: MassRate, in Range::from(0.0), default 0;
     }
 }

@@ -7,7 +7,9 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
 use super::problems::{Place, Problems};
 use super::read::{At, Field, Node, describe};
-use super::values::{Acceleration, Loose, Scalar, Time, check_name, quantity_schema, schemas};
+use super::values::{
+    Acceleration, Loose, Scalar, Time, check_name, name_pattern, quantity_schema, schemas,
+};
 use crate::units::Quantity;
 
 /// A point or vector of two or three values.
@@ -239,7 +241,7 @@ impl<T: Field> JsonSchema for Named<T> {
         let item = generator.subschema_for::<T>();
         json_schema!({
             "type": "object",
-            "patternProperties": { "^[a-z][a-z0-9_]*$": item },
+            "patternProperties": { name_pattern(): item },
             "additionalProperties": false
         })
     }

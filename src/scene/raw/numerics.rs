@@ -11,7 +11,7 @@ table! {
         optional quality: QualityWord, default "standard";
         /// Smoothing length over particle spacing.
         optional smoothing_ratio: Ratio, in Range::within(1.2, 2.5), default 1.6;
-        /// Artificial sound speed c0; if left out, 10 max(sqrt(g H), expected_speed), H the greatest height of material. For pressures beyond rho g H, as under a piston or of a viscous fluid in a gap, give more: up to 0.005 rho c0^2 they are right to about a percent.
+        /// Artificial sound speed c0; not below sqrt(g H), H the greatest height of material, or expected_speed; if left out, 10 times the larger of both. For pressures beyond rho g H, as under a piston or of a viscous fluid in a gap, give more: up to 0.005 rho c0^2 they are right to about a percent.
         optional sound_speed: Speed, in Range::above(0.0);
         /// Largest speed that the flow is expected to reach; raises the sound speed. Give it when material moves faster than sqrt(g H).
         optional expected_speed: Speed, in Range::from(0.0), default 0;
@@ -41,7 +41,7 @@ table! {
         optional yield_iterations: Whole, in Range::within(1.0, 100.0), default 1;
         /// Cap of the viscosity: at most cap_time x (cohesion + mu_s x pressure). With a capped yield a plug creeps at up to 1/cap_time, and 20 c0/g is taken if this is left out; with the exact yield it sets how fast the iteration goes, and 2 c0/g is taken.
         optional cap_time: Time, in Range::above(0.0);
-        /// Density diffusion; 0 switches it off. It does no more in a step than even a particle out with its neighbours: from 0.27 (in space 0.23) over acoustic_steps on, at the courant number and smoothing ratio left out, more changes nothing.
+        /// Density diffusion; 0 switches it off. It does no more in a step than even a particle out with its neighbours: from 0.276 (in space 0.237) over acoustic_steps on, at the courant number and smoothing ratio left out, more changes nothing.
         optional density_diffusion: Ratio, in Range::within(0.0, 1.0), default 0.1;
         /// Time scale that switches density diffusion off where material rests: it has all of its strength where the shear rate is above one over this. Left out: 0.3 c0/g, which is 0.3 s where material is 0.1 m high, so that scenes of all sizes are alike.
         optional diffusion_gate_time: Time, in Range::from(0.0);

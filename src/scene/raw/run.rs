@@ -7,7 +7,7 @@ table! {
     RawRun {
         /// Communication step: inputs are read and gauges sampled this often.
         required step: Time, in Range::above(0.0);
-        /// End of a run without an orchestrator, and default stop time of the FMU.
+        /// End of a run without an orchestrator, and default stop time of the FMU; at least one step, and at most 1e9 internal steps.
         required until: Time, in Range::above(0.0);
     }
 }
@@ -37,7 +37,7 @@ choice! {
 table! {
     /// What a run writes to its log.
     RawLog {
-        /// Particle snapshots every so many seconds of simulated time; 0 writes none.
+        /// Particle snapshots every so many seconds of simulated time, no shorter than run.step; 0 writes none.
         optional particles_every: Time, in Range::from(0.0), default "50 ms";
         /// Whether a run stops when its log cannot be written.
         optional required: Flag, default true;

@@ -110,10 +110,32 @@ pub(super) fn quantity_schema(quantity: Quantity) -> Schema {
     let symbols: Vec<_> = quantity.symbols().collect();
     json_schema!({
         "type": ["number", "string"],
+        "pattern": pattern(&symbols),
         "examples": [quantity.example()],
         "x-quantity": quantity.name(),
         "x-units": symbols
     })
+}
+
+/// What text with one of these units looks like, or with none: all that is taken, and of numbers a little more.
+fn pattern(symbols: &[&str]) -> String {
+    let mut units = vec![String::new()];
+    for symbol in symbols {
+        let mut escaped = String::new();
+        for c in symbol.chars() {
+            if matches!(c, '^' | '.') {
+                escaped.push('\\');
+            }
+            escaped.push(c);
+        }
+        units.push(escaped);
+        units.extend(match *symbol {
+            "um" => vec!["[µμ]m".to_owned()],
+            "deg" => vec!["°".to_owned()],
+            _ => Vec::new(),
+        });
+    }
+    format!(r"^\s*[-+.0-9][-+.0-9eE]*\s*({})\s*$", units.join("|"))
 }
 
 /// A finite number, if the value is one.
@@ -225,6 +247,11 @@ pub(in crate::scene) struct Name(pub(in crate::scene) String);
 
 /// Longest name: names become FMI variable names and Zenoh keys.
 const LONGEST_NAME: usize = 48;
+
+/// What names look like, for schemas.
+pub(super) fn name_pattern() -> String {
+    format!("^[a-z][a-z0-9_]{{0,{}}}$", LONGEST_NAME - 1)
+}
 
 pub(super) fn check_name(name: &str, place: &Place, problems: &mut Problems) -> bool {
     let letters = name
@@ -344,6 +371,6 @@ schemas! {
     [] Whole, "Whole", { "type": "integer", "minimum": 0 };
     [] Flag, "Flag", { "type": "boolean" };
     [] Text, "Text", { "type": "string" };
-    [] Name, "Name", { "type": "string", "pattern": "^[a-z][a-z0-9_]*$", "maxLength": LONGEST_NAME };
+    [] Name, "Name", { "type": "string", "pattern": name_pattern() };
     [] Loose, "Loose", { "type": ["number", "string"] };
 }
