@@ -84,6 +84,7 @@ impl<const D: usize> Solver<D> {
         self.note_lean(state);
         self.note_textures(state);
         self.note_turning(state);
+        self.note_transmitted(state);
     }
 
     #[inline(always)]
@@ -120,6 +121,9 @@ impl<const D: usize> Solver<D> {
             if !self.turns.is_empty() {
                 let alone = !near.have_harder() && !sees_walls;
                 block.turning.push(self.turn(&mut sums, phase, alone));
+            }
+            if self.has_pores {
+                block.transmitted.push(self.transmitted(&sums.moment));
             }
             *o = self.finish(&sums, phase, i, v);
             if FLUIDS && !self.slides.is_empty() {

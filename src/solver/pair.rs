@@ -90,6 +90,8 @@ pub(super) struct Block<const D: usize> {
     pub(super) reflections: Vec<Reflection<D>>,
     /// T of (F3) of each row; empty in scenes without.
     pub(super) textures: Vec<Tensor<D>>,
+    /// n.M n of each row, n along gravity (F9); empty in scenes without pores.
+    pub(super) transmitted: Vec<f64>,
     /// M of each row that (T1) is for, 0 of others; empty in scenes without.
     pub(super) turning: Vec<Tensor<D>>,
     /// Faces with friction that rows see, row after row; empty in scenes without.
@@ -178,6 +180,7 @@ impl<const D: usize> Block<D> {
         self.images.clear();
         self.reflections.clear();
         self.textures.clear();
+        self.transmitted.clear();
         self.turning.clear();
         self.contacts.clear();
     }

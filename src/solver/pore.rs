@@ -36,6 +36,8 @@ pub(super) struct Work {
     /// sum_j k_ij and what a dry surface adds; 0 for what has no pores.
     diagonal: Vec<f64>,
     residual: Vec<f64>,
+    /// m of (F9) of each particle [1]; empty with schemes that do without.
+    transmitted: Vec<f64>,
     direction: Vec<f64>,
     product: Vec<f64>,
     /// What rows look up of a neighbour.
