@@ -1,5 +1,5 @@
-//! Sums over the points of one flat face along which material slides, with friction or without, or to which a fluid sticks, rid of what the
-//! lattices' phase makes of them (docs/theory.md, W3b).
+//! Sums over the points of one flat face along which material slides, with friction or without, rid of what the lattices' phase makes of
+//! them (docs/theory.md, W3b).
 //!
 //! Along a face that goes on all round, g adds up to nothing but for 1e-3/dp, with a sign that changes with every spacing slid. It is left out
 //! of S: that is rough, and shakes what slides, a few times gravity's hundredth under ten rows. Beside an end of the face (a lip, a wall's upper edge) S has a part along it that is no noise, 0.05 to 0.2/dp: it holds up the pressure that
@@ -15,18 +15,18 @@ use super::wall_contact::same_normal;
 /// |S| along a face times the spacing up to which it is the lattices' phase [1]: 2e-3 at most, 5e-3 at h = 1.3 dp. All of twice as much counts.
 const NOISE: f64 = 5e-3;
 
-/// What a particle sees of walls, as far as it tells whether that is one flat face whose normal it knows.
+/// What a particle sees of walls, as far as it tells whether that is one flat face that material slides along.
 #[derive(Clone, Copy, Debug)]
 enum Seen<const D: usize> {
     /// Nothing yet.
     Nothing,
-    /// Points of flat faces with this normal only.
+    /// Points of such faces with this normal only.
     Flat(Vector<D>),
     /// Something else, too.
     Other,
 }
 
-/// The flat face that is all a particle sees of walls, while it is.
+/// The flat face that a particle slides along and that is all it sees of walls, while it is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FlatFace<const D: usize> {
     seen: Seen<D>,
@@ -46,10 +46,10 @@ impl<const D: usize> FlatFace<D> {
     /// With one more face; `moves`: its points come along with the wall.
     pub(super) fn add(&mut self, face: &FaceSums<D>, moves: bool) {
         let n = &face.normal;
-        let is_flat = *n != [0.0; D] && face.bend.is_none();
+        let slides = face.free_slip && face.bend.is_none();
         self.seen = match self.seen {
-            Seen::Nothing if is_flat => Seen::Flat(*n),
-            Seen::Flat(m) if is_flat && same_normal(&m, n) => self.seen,
+            Seen::Nothing if slides => Seen::Flat(*n),
+            Seen::Flat(m) if slides && same_normal(&m, n) => self.seen,
             _ => Seen::Other,
         };
         if !matches!(self.seen, Seen::Flat(_)) {

@@ -203,9 +203,8 @@ impl<const D: usize> Solver<D> {
         let g = scale(vf, x);
         let projection = self.wall_projection(&state.grains.position[pushing.i], w, state);
         // A point has of what the sum lacks (W3b) as much as of the push across the face, and keeps what it pushes along itself.
-        let of_pressure = match pushing.seen {
-            Some(seen) if seen.phase != [0.0; D] => {
-                let n = self.wall_normal(&state.grains.position[pushing.i], w, state);
+        let of_pressure = match (projection, pushing.seen) {
+            (Some(n), Some(seen)) if seen.phase != [0.0; D] => {
                 let share = dot(&n, &g) / dot(&n, &seen.s);
                 sub(&g, &scale(share, &seen.phase))
             }
