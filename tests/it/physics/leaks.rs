@@ -305,6 +305,7 @@ until = 0.3
         let least = particles.position.iter().map(|x| x[0]);
         let least = least.fold(f32::MAX, f32::min);
         println!("{least} m");
-        assert!(least > -0.25 * 0.005);
+        // Clay came to 0.02 spacings behind the face in other starts; what leaves the domain by more than a quarter stops the run.
+        assert!(least > -0.05 * 0.005, "{least}");
     }
 }
