@@ -128,7 +128,7 @@ fn fast(session: &Session) -> Option<String> {
             "note: at t = {time} s {:.0} % of the mass under pressure moved faster than a fifth of the sound speed\n  \
              ({}): so fast it is compressed by its own flow, and thin layers may gain speed.\n  \
              Give numerics.expected_speed, the largest speed that you expect, or a larger sound_speed; the run takes\n  \
-             longer in proportion. See validity.share_fast over time, and docs/theory.md, \"Limits\".",
+             longer in proportion. See validity.share_fast over time, and docs/limits.md.",
             100.0 * share,
             sound_speeds(session.component.scene()),
         )
@@ -144,7 +144,7 @@ fn squeezed(session: &Session) -> Option<String> {
             "note: at t = {time} s {:.0} % of the mass under pressure was squeezed by more than a twentieth\n  \
              ({}), where grains or water would not have given way: forces and pressures are those of a spring.\n  \
              Leave it room to go where a wall or a gate moves into it, or give a larger sound_speed; the run takes\n  \
-             longer in proportion. See validity.share_squeezed over time, and docs/theory.md, \"Limits\".",
+             longer in proportion. See validity.share_squeezed over time, and docs/limits.md.",
             100.0 * share,
             sound_speeds(session.component.scene()),
         )

@@ -507,7 +507,7 @@ fn run(scene: &Scene, time: f64) -> (State<2>, State<2>) {
 }
 
 /// A fluid that is sheared in a duct without a free surface keeps its pressure within three times what it starts with: what density
-/// missed of the way of each step raised it to seven times that. What is left (docs/theory.md, "Limits") comes in at walls.
+/// missed of the way of each step raised it to seven times that. What is left (docs/limits.md) comes in at walls.
 #[test]
 fn pressure_in_a_full_duct_does_not_run_away() {
     let text = r#"

@@ -242,7 +242,7 @@ velocity = [{belt}, 0]"#
 }
 
 /// A plane that turns in itself takes a block on it round at its own rate, to 2 %: near free faces the stress form resists
-/// rigid rotation a little (docs/theory.md, "Limits").
+/// rigid rotation a little (docs/limits.md).
 #[test]
 fn a_turntable_takes_its_load_round() {
     let mut table = unit(
