@@ -34,7 +34,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 pub use error::CliError;
 
@@ -77,17 +77,20 @@ enum Command {
 /// Reads the command line, does what it says and returns the exit code (see `sandgate --help`).
 #[must_use]
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
+    #[cfg(unix)]
+    stop::hear_file_limits();
+    let typed = take_negative_values(Cli::command()).try_get_matches();
+    let done = match typed.and_then(|typed| Cli::from_arg_matches(&typed)) {
+        Ok(cli) => dispatch(&cli.command),
+        // Help and version come this way too, on standard output and with exit code 0.
+        Err(help) if !help.use_stderr() => help.print().map_err(cannot_print),
         Err(error) => {
-            // Help and version come this way too, with exit code 0. Nothing can be done if even this cannot be printed.
+            // Nothing can be done if even this cannot be printed.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    #[cfg(unix)]
-    stop::hear_file_limits();
-    match dispatch(&cli.command) {
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(CliError::ReaderGone) => ExitCode::SUCCESS,
         Err(error) => {
@@ -95,6 +98,17 @@ pub fn main() -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Has options take numbers below 0, of which each then says what it allows; they would be taken for unknown options.
+fn take_negative_values(command: clap::Command) -> clap::Command {
+    let with_values = |arg: clap::Arg| {
+        let takes = arg.get_action().takes_values() && !arg.is_positional();
+        arg.allow_negative_numbers(takes)
+    };
+    command
+        .mut_args(with_values)
+        .mut_subcommands(take_negative_values)
 }
 
 fn dispatch(command: &Command) -> Result<(), CliError> {

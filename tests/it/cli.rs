@@ -155,6 +155,8 @@ fn wrong_use_is_refused_with_code_2() {
         &["not a decimal number"],
     );
     desk.refused(&["run", &silo, "--threads", "1000"], 2, &["1000", "256"]);
+    desk.refused(&["run", &silo, "--threads", "-1"], 2, &["-1", "0..=256"]);
+    desk.refused(&["log", "cat", "no.mcap", "--from", "-2m"], 2, &["-2m"]);
     desk.refused(&["run", &silo, "--force"], 2, &["--out"]);
     desk.refused(&["fmu", &silo, "--fmi", "1"], 2, &["2..=3"]);
     let words = ["whose folder does not exist", "make nowhere first"];
@@ -391,7 +393,7 @@ fn states_that_do_not_fit_are_refused() {
         desk.refused(
             &["run", &silo, "--resume", "run/checkpoint.state"],
             5,
-            &["saved state refused"],
+            &["run/checkpoint.state: saved state refused"],
         );
     }
     std::fs::write(&state, good).unwrap();

@@ -116,7 +116,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         }
         None => None,
     };
-    let component = session::ready(&scene, resumed.as_deref(), &plan)?;
+    let saved = args.resume.as_deref().zip(resumed.as_deref());
+    let component = session::ready(&scene, saved, &plan)?;
     let folder = match (continued, &args.out) {
         (Some(folder), _) => folder,
         (None, Some(path)) => folder::Folder::named(path, args.force)?,

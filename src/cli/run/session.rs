@@ -12,7 +12,7 @@ use super::series::Series;
 use super::summary;
 use crate::cli::CliError;
 use crate::cli::clock::{Stopwatch, cores};
-use crate::component::{Component, Mode, StepReport, Wish, next_point};
+use crate::component::{self, Component, Mode, StepReport, Wish, next_point};
 use crate::scene::Scene;
 
 /// A run as it is meant.
@@ -60,21 +60,29 @@ pub(super) struct Session {
     warned: bool,
 }
 
-/// A component ready to be initialised, or at the saved state.
+/// A component ready to be initialised, or at the state that a file of these bytes holds.
 ///
 /// # Errors
-/// [`CliError::Component`]; [`CliError::Usage`] if the saved state is already at or past the end.
+/// [`CliError::Component`]; [`CliError::Content`] if the file holds no state of this scene; [`CliError::Usage`] if that is
+/// already at or past the end.
 pub(super) fn ready(
     scene: &Scene,
-    saved: Option<&[u8]>,
+    saved: Option<(&Path, &[u8])>,
     plan: &Plan,
 ) -> Result<Component, CliError> {
     let mut component = Component::new(scene)?;
     component.set_threads(plan.threads);
-    let Some(bytes) = saved else {
+    let Some((file, bytes)) = saved else {
         return Ok(component);
     };
-    component.restore(bytes)?;
+    component.restore(bytes).map_err(|error| match error {
+        component::Error::Snapshot(_) => CliError::Content {
+            path: file.to_owned(),
+            problem: error.to_string(),
+            remedy: "give the checkpoint.state of a run of this scene",
+        },
+        other => other.into(),
+    })?;
     if component.mode() != Mode::Stepping {
         return Err(CliError::Usage(format!(
             "the saved state is in mode {:?}, allowed Stepping; give the checkpoint.state of a run",

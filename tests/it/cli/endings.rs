@@ -150,6 +150,8 @@ fn nobody_needs_to_read() {
             0,
         ),
         (format!("run {bad} 2> /dev/full"), 3),
+        ("help > /dev/full".to_owned(), 5),
+        ("run --help | true".to_owned(), 0),
         (format!("fmu {packed} -o {packed} 2> /dev/full"), 2),
     ] {
         let line = format!("set -o pipefail; {program} {line}");
