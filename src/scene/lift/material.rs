@@ -71,9 +71,18 @@ impl Lift<'_> {
     fn mu_i(&mut self, table: &Place, raw: &RawMuI) -> Option<Material> {
         let keys = friction_keys!(raw);
         let (law, grains) = self.friction(table, &keys)?;
-        let law = match &raw.layer_depth {
-            Some(depth) => law.of_layer(self.layer_shift(depth, raw, &keys, &grains)?),
-            None => law,
+        let law = match (&raw.layer_depth, &raw.layer_factor) {
+            (Some(depth), _) => law.of_layer(self.layer_shift(depth, raw, &keys, &grains)?),
+            (None, Some(factor)) => {
+                self.problems.report(
+                    &factor.place,
+                    "a layer_factor without layer_depth",
+                    "both, or layer_depth alone",
+                    "add layer_depth, the depth of the thin layer, or leave layer_factor out",
+                );
+                return None;
+            }
+            (None, None) => law,
         };
         self.material(grains, Law::MuI(law), &common_keys!(raw))
     }
