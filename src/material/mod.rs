@@ -180,6 +180,26 @@ impl Material {
         self.holds_fluid()
     }
 
+    /// Whether grains have shear stress that does not follow the pressure between them: cohesion, a viscous stress.
+    #[inline]
+    #[must_use]
+    pub fn holds_by_itself(&self) -> bool {
+        !self.is_fluid() && (self.cohesion > 0.0 || self.viscous.consistency > 0.0)
+    }
+
+    /// Density that a particle's volume in the sums is of, where its own is rho [kg/m^3]: what pressure adds is not in it for what
+    /// keeps its volume, nor for grains whose stress would notice (docs/theory.md, "Phases").
+    #[inline]
+    #[must_use]
+    pub fn density_of_volume(&self, rho: f64) -> f64 {
+        let rest = self.rest_density();
+        if self.keeps_volume() || self.holds_by_itself() && rho > rest {
+            rest
+        } else {
+            rho
+        }
+    }
+
     /// Density of the material at rest without load [kg/m^3].
     #[must_use]
     pub fn rest_density(&self) -> f64 {

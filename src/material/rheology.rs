@@ -60,6 +60,20 @@ impl Rheology for Material {
 }
 
 impl Material {
+    /// Grains with a strength or a viscosity of their own, as the sums over neighbours see them: R [c + K (R gamma)^n] beside
+    /// friction (docs/theory.md, E6b). R as in [`Rheology`]. None where that is the material itself.
+    #[inline]
+    #[must_use]
+    pub fn as_summed(&self, correction: f64) -> Option<Self> {
+        if !self.holds_by_itself() {
+            return None;
+        }
+        let mut summed = self.clone();
+        summed.cohesion *= correction;
+        summed.viscous.consistency *= correction.powf(1.0 + self.viscous.flow_index);
+        Some(summed)
+    }
+
     /// The stress that scales the cap of the viscosity [Pa]: cohesion + mu_s p. It is the yield stress for laws that
     /// have one.
     #[inline]
@@ -180,6 +194,23 @@ mod tests {
                     (slope - d).abs() <= 1e-6 * d + 1e-8 / g,
                     "{m:?}: {slope} for {d}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn what_does_not_follow_pressure_is_that_of_the_corrected_rate() {
+        for m in materials() {
+            let Some(summed) = m.as_summed(1.3) else {
+                assert!(m.is_fluid() || m.cohesion == 0.0, "{m:?}");
+                continue;
+            };
+            let own = |m: &Material, g: f64| m.cohesion + m.viscous.stress(g);
+            for g in [0.01, 1.0, 50.0] {
+                let friction = m.shear_stress(g, 300.0, 1.1) - own(&m, g);
+                let wanted = friction + 1.3 * own(&m, 1.3 * g);
+                let got = summed.shear_stress(g, 300.0, 1.1);
+                assert!((got / wanted - 1.0).abs() < 1e-12, "{m:?}: {got}, {wanted}");
             }
         }
     }

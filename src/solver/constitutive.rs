@@ -60,17 +60,19 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// V = m / (rho_0 width) of fluids and saturated beds: their density stands for pressure, and where they lie does not follow it
-    /// (docs/theory.md, "Fluids and saturated beds").
+    /// V = m / (rho_0 width) of what pressure makes denser and not smaller: fluids, saturated beds, and grains that hold by themselves
+    /// where they are denser than at rest. Where they lie does not follow it (docs/theory.md, "Phases").
     pub(super) fn hold_volumes(&mut self, state: &State<D>) {
-        if !self.has_fluids && !self.has_pores {
+        let held = |m: &Material| m.keeps_volume() || m.holds_by_itself();
+        if !self.materials.iter().any(held) {
             return;
         }
         let grains = &state.grains;
         for (i, v) in self.volume.iter_mut().enumerate() {
             let material = &self.materials[grains.phase[i] as usize];
-            if material.keeps_volume() {
-                *v = grains.mass[i] / (material.rest_density() * self.width);
+            if held(material) {
+                let rho = material.density_of_volume(grains.swept_density[i]);
+                *v = grains.mass[i] / (rho * self.width);
             }
         }
     }
@@ -120,10 +122,12 @@ impl<const D: usize> Solver<D> {
         if p > 0.0 {
             response.inertial_number = correction * k.shear * m.grains.inertial_time(p);
         }
-        // A fluid's stress is that of the corrected rate, and works on it: Phi(R gamma). Sand's must match its pressure.
+        // A fluid's stress is that of the corrected rate, and works on it: Phi(R gamma). Friction must match its pressure.
         let r = if m.is_fluid() { k.correction } else { 1.0 };
+        let summed = m.as_summed(k.correction);
+        let law = summed.as_ref().unwrap_or(m);
         response.viscosity =
-            r * r * m.capped_viscosity(r * k.shear, p, correction, self.numerics.cap_time);
+            r * r * law.capped_viscosity(r * k.shear, p, correction, self.numerics.cap_time);
         // What is pulled has no friction against changes of its volume.
         if m.bulk_friction > 0.0 && p > 0.0 {
             response.normal_pressure += bulk_pressure(

@@ -97,7 +97,9 @@ impl<const D: usize> Solver<D> {
             let most = if material.is_fluid() {
                 r * material.shear_stress(r * rate, 0.0, 1.0)
             } else {
-                material.shear_stress(rate, self.yield_pressure(i), r)
+                let summed = material.as_summed(r);
+                let law = summed.as_ref().unwrap_or(material);
+                law.shear_stress(rate, self.yield_pressure(i), r)
             };
             let fastest = self.sound_speed_of(material) / self.kernel.h;
             let excess = ((SPARE - 1.0) * most).min(self.viscosity[i] * fastest);
@@ -151,7 +153,9 @@ impl<const D: usize> Solver<D> {
             };
             rate / correction
         } else {
-            material.resolvent(size, r, p, correction)
+            let summed = material.as_summed(correction);
+            let law = summed.as_ref().unwrap_or(material);
+            law.resolvent(size, r, p, correction)
         };
         if q <= 0.0 {
             return (*x, zero);

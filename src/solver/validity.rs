@@ -106,10 +106,10 @@ impl<const D: usize> Solver<D> {
             let flows = self.geometry.size(&state.grains.plastic_rate[i]) > 0.0;
             return (flows, !flows);
         }
-        let stress = (1.0 + ROUNDING) * self.viscosity[i] * self.kinematics[i].shear;
-        (
-            stress >= material.yield_stress(p),
-            stress < material.strength(p),
-        )
+        let k = &self.kinematics[i];
+        let stress = (1.0 + ROUNDING) * self.viscosity[i] * k.shear;
+        let summed = material.as_summed(k.correction);
+        let law = summed.as_ref().unwrap_or(material);
+        (stress >= law.yield_stress(p), stress < law.strength(p))
     }
 }

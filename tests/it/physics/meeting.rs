@@ -5,17 +5,17 @@ use sandgate::scene;
 
 const G: f64 = 9.81;
 
-/// 0.1 m of a fluid of 5 Pa s on a slope of 1 degree, 10 rows, over a `bed` as deep or, without one, over the floor.
+/// 0.1 m of a fluid of 5 Pa s on a slope of 1 degree, 20 rows, over a `bed` half as deep or, without one, over the floor.
 fn film(bed: Option<&str>) -> Unit {
     let (material, body, foot) = match bed {
         None => (String::new(), String::new(), 0.0),
         Some(bed) => (
             format!("[materials.bed]\n{bed}\n"),
-            "[bodies.bed]\nmaterial = \"bed\"\nbox = { lower = [0, -0.1], upper = [0.2, 0] }\n\
-             [gauges.drag]\nkind = \"interface_stress\"\nfoot = [0.05, -0.1]\nmaterial = \"bed\"\n\
-             [gauges.drag_too]\nkind = \"interface_stress\"\nfoot = [0.15, -0.1]\nmaterial = \"bed\"\n"
+            "[bodies.bed]\nmaterial = \"bed\"\nbox = { lower = [0, -0.05], upper = [0.1, 0] }\n\
+             [gauges.drag]\nkind = \"interface_stress\"\nfoot = [0.025, -0.05]\nmaterial = \"bed\"\n\
+             [gauges.drag_too]\nkind = \"interface_stress\"\nfoot = [0.075, -0.05]\nmaterial = \"bed\"\n"
                 .to_owned(),
-            -0.1,
+            -0.05,
         ),
     };
     let text = format!(
@@ -23,28 +23,28 @@ fn film(bed: Option<&str>) -> Unit {
 name = "film"
 [domain]
 lower = [0, -0.2]
-upper = [0.2, 0.3]
+upper = [0.1, 0.3]
 periodic = ["x"]
 slope = "1 deg"
 [numerics]
-spacing = "10 mm"
+spacing = "5 mm"
 [materials.thick]
 law = "fluid"
 density = 1000
 consistency = 5
 [bodies.film]
 material = "thick"
-box = {{ lower = [0, 0], upper = [0.2, 0.1] }}
+box = {{ lower = [0, 0], upper = [0.1, 0.1] }}
 [walls.floor]
 plane = {{ point = [0, {foot}], normal = [0, 1] }}
 {material}{body}
 [gauges.flow]
 kind = "discharge"
-from = [0.1, 0.3]
-to = [0.1, {foot}]
+from = [0.05, 0.3]
+to = [0.05, {foot}]
 [run]
 step = "20 ms"
-until = "8 s"
+until = "7 s"
 "#
     );
     Unit::new(&scene::parse("film", &text).unwrap())
@@ -59,9 +59,9 @@ fn a_film_flows_over_a_bed_that_holds_as_over_a_wall() {
         1000.0 * slope * 0.1,
     );
     let flow = |unit: &mut Unit| {
-        unit.run_to(6.0);
+        unit.run_to(4.0);
         let before = unit.get("gauge.flow.mass");
-        unit.run_to(8.0);
+        unit.run_to(6.0);
         (unit.get("gauge.flow.mass") - before).abs() / 2.0
     };
     let wall = flow(&mut film(None));
@@ -80,9 +80,10 @@ fn a_film_flows_over_a_bed_that_holds_as_over_a_wall() {
         println!(
             "{got:.2} kg/s, over a wall {wall:.2}, exact {exact:.2}; drag {stress:.1} Pa, exact {drag:.1}"
         );
-        // A plane of no slip a tenth of a row off changes the flow by 3 % at ten rows.
-        assert!((got / exact - 1.0).abs() < 0.03, "{got} for {exact} kg/s");
-        assert!((got / wall - 1.0).abs() < 0.05, "{got} for {wall} kg/s");
+        // A plane of no slip a tenth of a row off changes the flow by 1.5 % at twenty rows. At ten, 3.5 % too
+        // much flows over silt.
+        assert!((got / exact - 1.0).abs() < 0.02, "{got} for {exact} kg/s");
+        assert!((got / wall - 1.0).abs() < 0.02, "{got} for {wall} kg/s");
         // The place of the bed's top is known to half a row, 5 % of the load, and unevenness of its rows adds to that.
         assert!((stress / drag - 1.0).abs() < 0.25, "{stress} for {drag} Pa");
     }
