@@ -114,9 +114,11 @@ impl<const D: usize> Sampler<D> {
         }
     }
 
-    /// What some gauge sees, each once.
+    /// What some gauge sees of particles, each once; forces and discharges are kept by the step itself.
     pub(crate) fn seen(&self) -> Vec<Sight> {
-        let mut seen = self.sights.clone();
+        let looks = |g: &Kind<D>| matches!(g, Kind::Field(_) | Kind::Interface { .. });
+        let gauges = self.gauges.iter().zip(&self.sights);
+        let mut seen: Vec<Sight> = gauges.filter(|(g, _)| looks(g)).map(|(_, s)| *s).collect();
         seen.sort_unstable();
         seen.dedup();
         seen
@@ -165,12 +167,12 @@ impl<const D: usize> Sampler<D> {
         &self,
         view: impl Fn(Sight) -> View<'v, D>,
         edge: impl Fn(u8) -> Edge<'v, D>,
-        devices: &Devices,
-        step: f64,
+        is_outside: impl Fn(&[f64; D]) -> bool,
+        (devices, step): (&Devices, f64),
     ) -> Vec<Reading> {
         let read = |(gauge, sight): (&Kind<D>, &Sight)| match gauge {
             Kind::Field(field) => gauge::sample(field, &view(*sight)),
-            Kind::Discharge { section, .. } if view(*sight).is_outside(&section.centre()) => {
+            Kind::Discharge { section, .. } if is_outside(&section.centre()) => {
                 Reading::none(2, Validity::Outside)
             }
             Kind::Discharge { section, before } => discharge(section, *before, step),

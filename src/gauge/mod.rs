@@ -25,7 +25,7 @@ pub use mass::{MassBox, PRESSED_IN};
 pub use pressure::PressureProbe;
 pub use profile::Profile;
 pub use solid::Solid;
-pub use view::View;
+pub use view::{View, is_outside};
 
 /// Whether a reading means something. Its number is what the `gauge.NAME.validity` variable shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

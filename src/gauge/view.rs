@@ -43,11 +43,7 @@ impl<const D: usize> View<'_, D> {
     /// Whether a place is outside the domain (never along periodic axes).
     #[must_use]
     pub fn is_outside(&self, at: &[f64; D]) -> bool {
-        (0..D).any(|a| {
-            // Places on the rim belong to the domain, rounding included.
-            let slack = 1e-9 * (self.upper[a] - self.lower[a]);
-            !self.periodic[a] && !(self.lower[a] - slack..=self.upper[a] + slack).contains(&at[a])
-        })
+        is_outside(at, (&self.lower, &self.upper), &self.periodic)
     }
 
     /// Volume of particle `i` [m^D]: of rings the area of their section.
@@ -116,6 +112,20 @@ impl<const D: usize> View<'_, D> {
 pub(super) fn mirror<const D: usize>(mut x: [f64; D]) -> [f64; D] {
     x[0] = -x[0];
     x
+}
+
+/// Whether a place is outside the domain from `lower` to `upper` (never along periodic axes).
+#[must_use]
+pub fn is_outside<const D: usize>(
+    at: &[f64; D],
+    (lower, upper): (&[f64; D], &[f64; D]),
+    periodic: &[bool; D],
+) -> bool {
+    (0..D).any(|a| {
+        // Places on the rim belong to the domain, rounding included.
+        let slack = 1e-9 * (upper[a] - lower[a]);
+        !periodic[a] && !(lower[a] - slack..=upper[a] + slack).contains(&at[a])
+    })
 }
 
 #[cfg(test)]

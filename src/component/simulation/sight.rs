@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::component::sampling::Sight;
-use crate::gauge::{Edge, Reading, View};
+use crate::gauge::{Edge, Reading, View, is_outside};
 use crate::math::Vector;
 use crate::scene::PressureQuantity;
 use crate::state::CellGrid;
@@ -29,20 +29,11 @@ struct Met<const D: usize> {
 impl<const D: usize> Simulation<D> {
     /// Readings of all gauges now, at the end of a communication step of this length [s].
     pub(super) fn readings(&self, step: f64) -> Vec<Reading> {
-        let walls = self.solver.walls();
-        let solid: Vec<Vector<D>> = walls
-            .position
-            .iter()
-            .zip(&walls.weight)
-            .filter(|(_, w)| **w > 0.5)
-            .map(|(x, _)| *x)
-            .collect();
-        let solid = self.cells(&solid);
+        let seen = self.sampler.seen();
+        let solid = self.cells(&self.solid_points(!seen.is_empty()));
         let openings = self.state.gates.iter().map(|g| g.opening);
         let solids = self.solids.at(self.state.pose.now, openings);
-        let shown: Vec<(Sight, Shown<D>)> = self
-            .sampler
-            .seen()
+        let shown: Vec<(Sight, Shown<D>)> = seen
             .into_iter()
             .map(|sight| (sight, self.show(sight)))
             .collect();
@@ -52,6 +43,8 @@ impl<const D: usize> Simulation<D> {
             .into_iter()
             .map(|material| self.meet(material))
             .collect();
+        let periodic = self.periodic.map(|p| p.is_some());
+        let outside = |at: &Vector<D>| is_outside(at, (&self.lower, &self.upper), &periodic);
         let view = |sight: Sight| {
             // All that a gauge sees is shown.
             let place = shown.iter().position(|(s, _)| *s == sight);
@@ -69,7 +62,7 @@ impl<const D: usize> Simulation<D> {
                 geometry: self.geometry,
                 lower: self.lower,
                 upper: self.upper,
-                periodic: self.periodic.map(|p| p.is_some()),
+                periodic,
             }
         };
         let edge = |material: u8| {
@@ -83,7 +76,18 @@ impl<const D: usize> Simulation<D> {
                 cells: &met.cells,
             }
         };
-        self.sampler.sample(view, edge, &self.devices, step)
+        self.sampler
+            .sample(view, edge, outside, (&self.devices, step))
+    }
+
+    /// Points of walls and gates that fill their place, where some gauge looks for them.
+    fn solid_points(&self, wanted: bool) -> Vec<Vector<D>> {
+        if !wanted {
+            return Vec::new();
+        }
+        let walls = self.solver.walls();
+        let whole = walls.position.iter().zip(&walls.weight);
+        whole.filter(|(_, w)| **w > 0.5).map(|(x, _)| *x).collect()
     }
 
     /// Particles of a material, or all. Grains that an outflow has taken stay in the arrays until lists are rebuilt; gauges do
