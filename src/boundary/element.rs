@@ -13,7 +13,7 @@
 
 use std::f64::consts::PI;
 
-use super::points::reach;
+use super::flats::reach;
 use crate::kernel::WendlandC2;
 use crate::math::{Vector, dot, norm, scale, sub};
 

@@ -4,8 +4,10 @@
 //! (docs/theory.md, "Walls"): no distance to the wall is needed.
 
 mod bends;
+mod courses;
 mod element;
 mod ends;
+mod flats;
 mod joints;
 mod mover;
 mod piston;
@@ -17,10 +19,11 @@ mod wall_points;
 pub use bends::to_centres;
 pub use element::{Element, box_elements, plane_elements, polyline_elements};
 pub use ends::{End, free_ends};
+pub use flats::{Face, box_points, plane_points};
 pub use joints::Joint;
 pub use mover::{Mover, RigidMotion};
 pub use piston::Piston;
 pub use plate::{Meets, Plate};
-pub use points::{ROWS, box_points, joined_points, plane_points, polyline_points};
+pub use points::{ROWS, joined_points, polyline_points};
 pub use tips::tip_points;
 pub use wall_points::{GroupSpec, WallPoints};

@@ -1,9 +1,7 @@
-//! Where wall points lie: rows behind polylines, planes and in boxes.
-
-use std::ops::Range;
+//! Where wall points lie: rows behind polylines.
 
 use super::tips::Tip;
-use crate::math::{Vector, add, dot, norm, scale, sub};
+use crate::math::{add, dot, norm, scale, sub};
 
 /// Rows of points behind a wall's surface: enough for a support of 2 h at h/dp <= 2.
 pub const ROWS: usize = 4;
@@ -177,133 +175,6 @@ impl Polyline<'_> {
     }
 }
 
-/// Points behind the plane through `point` with unit `normal`, inside lower..upper widened by the rows on axes that are
-/// not periodic.
-#[must_use]
-pub fn plane_points<const D: usize>(
-    point: &Vector<D>,
-    normal: &Vector<D>,
-    lower: &Vector<D>,
-    upper: &Vector<D>,
-    periodic: &[bool; D],
-    spacing: f64,
-) -> Vec<Vector<D>> {
-    let margin = ROWS as f64 * spacing;
-    let tangents = plane_tangents(normal);
-    let start = {
-        // The lattice starts at the domain's lower corner, moved into the plane.
-        let d = sub(lower, point);
-        sub(lower, &scale(dot(&d, normal), normal))
-    };
-    let inside = |x: &Vector<D>| {
-        (0..D).all(|k| {
-            let m = if periodic[k] { 0.0 } else { margin };
-            x[k] > lower[k] - m && x[k] < upper[k] + m
-        })
-    };
-    let mut points = Vec::new();
-    let (outer_lower, outer_upper) = (lower.map(|x| x - margin), upper.map(|x| x + margin));
-    let range = |axis_count: usize| match tangents.get(axis_count) {
-        Some(tangent) => reach(tangent, &start, (&outer_lower, &outer_upper), spacing),
-        None => 0..1,
-    };
-    for row in 0..ROWS {
-        let base = sub(&start, &scale((row as f64 + 0.5) * spacing, normal));
-        for a in range(0) {
-            for b in range(1) {
-                let mut x = base;
-                for (t, n) in tangents.iter().zip([a, b]) {
-                    x = add(&x, &scale((n as f64 + 0.5) * spacing, t));
-                }
-                // The wall's own axis may lie outside the domain: only the tangential extent is clipped.
-                let on = sub(&x, &scale(dot(&sub(&x, point), normal), normal));
-                if inside(&on) {
-                    points.push(x);
-                }
-            }
-        }
-    }
-    points
-}
-
-/// Numbers n of the places start + (n + 1/2) spacing tangent that may lie in the box, and a few more. In a domain that is long along
-/// one axis planes across it have few.
-pub(super) fn reach<const D: usize>(
-    tangent: &Vector<D>,
-    start: &Vector<D>,
-    (lower, upper): (&Vector<D>, &Vector<D>),
-    spacing: f64,
-) -> Range<i64> {
-    let (mut least, mut most) = (0.0, 0.0);
-    for k in 0..D {
-        let ends = [lower[k], upper[k]].map(|x| (x - start[k]) * tangent[k] / spacing);
-        least += ends[0].min(ends[1]);
-        most += ends[0].max(ends[1]);
-    }
-    least.floor() as i64 - 2..most.ceil() as i64 + 2
-}
-
-/// Unit vectors along a plane with this unit normal, at right angles: the other axes for an axis-aligned plane (so that its
-/// points continue the particles' lattice).
-fn plane_tangents<const D: usize>(normal: &Vector<D>) -> Vec<Vector<D>> {
-    let axis = (0..D).find(|&k| normal[k].abs() > 1.0 - 1e-12);
-    let mut tangents: Vec<Vector<D>> = Vec::new();
-    for k in 0..D {
-        if Some(k) == axis {
-            continue;
-        }
-        let mut t = [0.0; D];
-        t[k] = 1.0;
-        let mut rest = sub(&t, &scale(dot(&t, normal), normal));
-        for u in &tangents {
-            rest = sub(&rest, &scale(dot(&rest, u), u));
-        }
-        if norm(&rest) > 1e-6 && tangents.len() + 1 < D {
-            tangents.push(scale(1.0 / norm(&rest), &rest));
-        }
-    }
-    tangents
-}
-
-/// (position, outward normal) of the outer rows of a solid box.
-#[must_use]
-pub fn box_points<const D: usize>(
-    lower: &Vector<D>,
-    upper: &Vector<D>,
-    spacing: f64,
-) -> Vec<(Vector<D>, Vector<D>)> {
-    let count: [usize; D] =
-        std::array::from_fn(|k| ((upper[k] - lower[k]) / spacing).round().max(1.0) as usize);
-    let total: usize = count.iter().product();
-    let mut points = Vec::new();
-    for n in 0..total {
-        let mut m = n;
-        let index: [usize; D] = std::array::from_fn(|k| {
-            let i = m % count[k];
-            m /= count[k];
-            i
-        });
-        let x: Vector<D> = std::array::from_fn(|k| {
-            lower[k] + (index[k] as f64 + 0.5) * (upper[k] - lower[k]) / count[k] as f64
-        });
-        // Nearest face.
-        let mut best = (f64::INFINITY, 0, 1.0);
-        for k in 0..D {
-            for (distance, sign) in [(x[k] - lower[k], -1.0), (upper[k] - x[k], 1.0)] {
-                if distance < best.0 {
-                    best = (distance, k, sign);
-                }
-            }
-        }
-        if best.0 <= ROWS as f64 * spacing {
-            let mut normal = [0.0; D];
-            normal[best.1] = best.2;
-            points.push((x, normal));
-        }
-    }
-    points
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -353,36 +224,5 @@ mod tests {
         row.sort_by(f64::total_cmp);
         assert_eq!(row.len(), 8);
         assert!((row[0] - 0.05).abs() < 1e-12 && (row[7] - 0.75).abs() < 1e-12);
-    }
-
-    #[test]
-    fn plane_points_lie_behind_the_plane() {
-        let n = [0.0, 0.0, 1.0];
-        let p = plane_points(
-            &[0.0; 3],
-            &n,
-            &[0.0; 3],
-            &[1.0, 1.0, 1.0],
-            &[false; 3],
-            0.25,
-        );
-        assert!(p.iter().all(|x| x[2] < 0.0 && x[2] > -1.0));
-        assert_eq!(p.len(), 4 * 12 * 12);
-    }
-
-    /// A floor of 40 by 40 points under a sky of a million kilometres.
-    #[test]
-    fn planes_across_a_long_domain_have_the_points_of_a_short_one() {
-        let floor = |normal: [f64; 3], height: f64| {
-            let upper = [1.0, 1.0, height];
-            plane_points(&[0.0; 3], &normal, &[0.0; 3], &upper, &[false; 3], 0.025)
-        };
-        let (low, high) = (floor([0.0, 0.0, 1.0], 1.0), floor([0.0, 0.0, 1.0], 1e9));
-        assert_eq!(low.len(), 4 * 48 * 48);
-        assert_eq!(low, high);
-        // A slope meets the domain in a patch, wherever its sides are.
-        let slope = floor([0.6, 0.0, 0.8], 1.0);
-        assert_eq!(slope.len() % 4, 0);
-        assert!(slope.len() > 1000, "{}", slope.len());
     }
 }

@@ -7,6 +7,7 @@ mod acoustic_steps;
 mod askew;
 mod axisymmetric;
 mod bends;
+mod bins;
 mod boxes;
 mod chutes;
 mod collapse;

@@ -1,5 +1,6 @@
 //! Scene to what the solver runs: particles, wall points, devices. The last module that knows scenes.
 
+mod faces;
 mod inflows;
 mod joins;
 mod masses;

@@ -7,6 +7,7 @@ use crate::boundary::{
 use crate::math::{dot, norm, scale};
 use crate::solver::{PARALLEL, Periodic};
 
+use super::faces::faces_at;
 use super::narrow;
 use super::slides::drop_behind_slides;
 use crate::scene::{
@@ -30,9 +31,10 @@ pub(super) fn walls<const D: usize>(scene: &Scene, periodic: &Periodic<D>) -> Wa
                 closed,
             } => add_polyline(&mut points, scene, n, corners, *closed),
             WallGeometry::Box { lower, upper } => {
-                let velocity = narrow(&wall.velocity);
-                for (x, normal) in box_points::<D>(&narrow(lower), &narrow(upper), dp) {
-                    points.push(x, velocity, normal, 1.0, n as u16);
+                let (velocity, faces) = (narrow(&wall.velocity), faces_at(scene, n));
+                let rows = box_points::<D>(&narrow(lower), &narrow(upper), &faces, dp);
+                for (x, normal, weight) in rows {
+                    points.push(x, velocity, normal, weight, n as u16);
                 }
             }
             WallGeometry::Plane { point, normal } => {
@@ -145,9 +147,11 @@ fn add_plane<const D: usize>(
         scene.walls[wall].rotation.as_ref(),
     );
     let dp = scene.numerics.spacing;
-    for x in plane_points::<D>(&narrow(point), &normal, &lower, &upper, &sides, dp) {
+    let (place, faces) = (narrow(point), faces_at(scene, wall));
+    let rows = plane_points::<D>((&place, &normal), &faces, (&lower, &upper), &sides, dp);
+    for (x, weight) in rows {
         let velocity = motion.velocity_at(&x, 0.0);
-        points.push(x, velocity, normal, 1.0, wall as u16);
+        points.push(x, velocity, normal, weight, wall as u16);
     }
 }
 
