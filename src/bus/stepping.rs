@@ -48,29 +48,12 @@ impl Stepper<'_> {
         let mut pace: Option<Pace> = None;
         // Turns since the orchestrator's silence lasted too long.
         let mut overdue = 0;
+        // What is carried out before the step that is due.
+        let mut ahead = None;
         while !stop.load(Relaxed) && self.ends.is_none_or(|end| Instant::now() < end) {
             self.protocol.tell_notes(&self.component, observer);
             self.tell_trouble(observer);
-            let wait = match self.protocol.free_running() {
-                None => {
-                    if pace.take().is_some() {
-                        // While the component stepped by itself nobody had to speak.
-                        self.watch.excuse();
-                    }
-                    LOOK_UP
-                }
-                Some(factor) => {
-                    let time = self.component.time();
-                    let epoch = self.protocol.epoch();
-                    let kept = pace
-                        .take()
-                        .filter(|p| p.factor == factor && p.epoch == epoch);
-                    let kept = kept.unwrap_or_else(|| Pace::new(time, factor, epoch));
-                    let wait = kept.wait(time);
-                    pace = Some(kept);
-                    wait.min(LOOK_UP)
-                }
-            };
+            pace = self.keep_pace(pace);
             overdue = match pace.is_none() && self.watch.is_due() {
                 true => overdue + 1,
                 false => 0,
@@ -79,7 +62,25 @@ impl Stepper<'_> {
             if overdue > WAITING_REQUESTS && self.is_lost(observer) {
                 break;
             }
-            let wait = if overdue > 0 { Duration::ZERO } else { wait };
+            let until_step = pace.as_ref().map(|p| p.wait(self.component.time()));
+            // What waits when a step falls due is carried out before it, as it may be what ends free running. What comes
+            // later puts it off no further: clients that keep asking would stop the component.
+            ahead = match until_step {
+                Some(Duration::ZERO) => match ahead.or_else(|| self.tasks.waiting()) {
+                    None => break,
+                    Some(0) => {
+                        self.free_step(observer);
+                        ahead = None;
+                        continue;
+                    }
+                    Some(tasks) => Some(tasks - 1),
+                },
+                _ => None,
+            };
+            let wait = match overdue {
+                0 => until_step.unwrap_or(LOOK_UP).min(LOOK_UP),
+                _ => Duration::ZERO,
+            };
             match self.tasks.take(wait) {
                 Ok(task) => {
                     if self.carry_out(task, observer) {
@@ -88,17 +89,26 @@ impl Stepper<'_> {
                 }
                 Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => {
-                    let due = pace
-                        .as_ref()
-                        .is_some_and(|p| p.wait(self.component.time()).is_zero());
-                    if due {
-                        self.free_step(observer);
-                    } else if overdue > 0 && self.is_lost(observer) {
+                    if overdue > 0 && self.is_lost(observer) {
                         break;
                     }
                 }
             }
         }
+    }
+
+    /// The pace of free running from here on, if the component steps by itself.
+    fn keep_pace(&mut self, before: Option<Pace>) -> Option<Pace> {
+        let Some(factor) = self.protocol.free_running() else {
+            if before.is_some() {
+                // While the component stepped by itself nobody had to speak.
+                self.watch.excuse();
+            }
+            return None;
+        };
+        let epoch = self.protocol.epoch();
+        let kept = before.filter(|pace| pace.factor == factor && pace.epoch == epoch);
+        Some(kept.unwrap_or_else(|| Pace::new(self.component.time(), factor, epoch)))
     }
 
     /// Nobody gets in any more. Who still waits is told why nothing comes of it, and the log is told all of it; gives the

@@ -191,6 +191,13 @@ impl Taker {
         }
     }
 
+    /// How many wait now; none if nothing waits and nobody gives any more.
+    pub(super) fn waiting(&self) -> Option<usize> {
+        let waiting = lock(&self.0.waiting);
+        let tasks = waiting.entries.len();
+        (tasks > 0 || !waiting.closed).then_some(tasks)
+    }
+
     /// All that wait now: what comes meanwhile is not waited for.
     pub(super) fn take_all(&self) -> impl Iterator<Item = Task> + use<> {
         let entries = std::mem::take(&mut lock(&self.0.waiting).entries);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::bus::notes::{Note, Notes};
 use crate::bus::refusal::Code;
-use crate::bus::tasks::tasks;
+use crate::bus::tasks::{Giver, tasks};
 use crate::bus::values::Settable;
 use crate::bus::verb::Verb;
 use crate::component::{Causality, StepReport, ValueKind, ValueReference};
@@ -220,6 +220,85 @@ fn set_points_that_keep_coming_are_no_orchestrator() {
         stepper.run(&mut Unobserved, &stop);
     });
     assert!(shared.orchestrator_lost.load(Relaxed));
+}
+
+/// A client that asks again as soon as it is answered, so that something always waits.
+struct Insistent {
+    give: Arc<Giver>,
+    left: usize,
+    stop: Arc<AtomicBool>,
+}
+
+impl Insistent {
+    fn ask(self) {
+        let give = self.give.clone();
+        let task = Task::Call {
+            request: Box::new(Request::parse(Verb::Get, b"{}").unwrap()),
+            body: "{}".to_owned(),
+            asked: Box::new(self),
+        };
+        assert!(give.call(task).is_ok());
+    }
+}
+
+impl Asked for Insistent {
+    fn answer(self: Box<Self>, _: Reply) {
+        match self.left {
+            0 => self.stop.store(true, Relaxed),
+            left => Self {
+                left: left - 1,
+                ..*self
+            }
+            .ask(),
+        }
+    }
+}
+
+#[test]
+fn requests_that_keep_coming_do_not_keep_a_component_from_stepping_by_itself() {
+    let (component, mut protocol) = silo(Protocol::new("sandgate/v1/silo", None));
+    protocol.run_freely(f64::INFINITY);
+    let shared = Shared::new(protocol.status(&component));
+    let (give, tasks) = tasks(Settable::of(component.variables()));
+    let stop = Arc::new(AtomicBool::new(false));
+    Insistent {
+        give: Arc::new(give),
+        left: 5,
+        stop: stop.clone(),
+    }
+    .ask();
+    let mut stepper = Stepper {
+        component,
+        protocol,
+        shared: &shared,
+        tasks,
+        watch: Watch::new(None),
+        ends: None,
+    };
+    stepper.run(&mut Unobserved, &stop);
+    // One before each request but the first, which waited already.
+    assert_eq!(stepper.component.communication_steps(), 5);
+}
+
+#[test]
+fn free_running_ends_with_who_can_ask() {
+    let (component, mut protocol) = silo(Protocol::new("sandgate/v1/silo", None));
+    protocol.run_freely(f64::INFINITY);
+    let shared = Shared::new(protocol.status(&component));
+    let (give, tasks) = tasks(Settable::of(component.variables()));
+    let answers = Arc::default();
+    give.call(call(Verb::Get, "{}", &answers)).ok().unwrap();
+    drop(give);
+    let mut stepper = Stepper {
+        component,
+        protocol,
+        shared: &shared,
+        tasks,
+        watch: Watch::new(None),
+        ends: None,
+    };
+    stepper.run(&mut Unobserved, &AtomicBool::new(false));
+    assert_eq!(*answers.lock().unwrap(), ["ok"]);
 }
 
 /// A log that must be whole and is not.
