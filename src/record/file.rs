@@ -5,6 +5,9 @@
 //! Loss: with [`Pace::WallClock`] a thread brings everything to the system within `FLUSH_AFTER` plus `LOOK_EVERY` of `state`,
 //! also while a step takes minutes; with [`Pace::Caller`] whatever came before the last [`LogFile::flush`] is safe and
 //! the bytes do not depend on any clock.
+//!
+//! A process that is forked from the one that writes has the file and its lock, but no thread that would let go of the lock
+//! if it held it then: in it nothing that threads share is touched.
 
 mod state;
 
@@ -17,7 +20,7 @@ use state::{Shared, State, spawn_flusher};
 use std::collections::BTreeMap;
 use std::io::BufWriter;
 use std::path::PathBuf;
-use std::sync::{Arc, MutexGuard};
+use std::sync::{Arc, MutexGuard, OnceLock};
 use std::thread::JoinHandle;
 
 /// Bytes of a chunk at which it is closed without waiting for a flush; also the memory a log takes.
@@ -60,6 +63,12 @@ pub(super) struct LogFile {
     shared: Arc<Shared>,
     flusher: Option<JoinHandle<()>>,
     path: Option<PathBuf>,
+    /// The process that writes.
+    process: u32,
+    /// Takes the place of `shared` in a process that was forked from it.
+    forked: OnceLock<Shared>,
+    /// Simulated time of the last message [s].
+    time: f64,
 }
 
 /// What became of the messages of a file. Of the chunk at which a write failed a part may be there, and can be read: all of it
@@ -107,6 +116,9 @@ impl LogFile {
             shared,
             flusher,
             path,
+            process: std::process::id(),
+            forked: OnceLock::new(),
+            time: 0.0,
         }
     }
 
@@ -174,6 +186,7 @@ impl LogFile {
         };
         let path = self.path.as_ref();
         self.lock().message(path, time, &header, data);
+        self.time = time;
     }
 
     /// Closes the chunk and hands all bytes to the system.
@@ -217,14 +230,21 @@ impl LogFile {
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
-        let mut state = self.shared.lock();
-        state.leave_to_parent(self.path.as_ref());
-        state
+        if !self.is_forked() {
+            return self.shared.lock();
+        }
+        let forked = || Shared::new(State::left_to_parent(self.time, self.path.as_ref()));
+        self.forked.get_or_init(forked).lock()
+    }
+
+    /// Whether this process was forked from the one that writes, and has no thread that brings bytes to the system.
+    fn is_forked(&self) -> bool {
+        self.process != std::process::id()
     }
 
     fn stop_flusher(&mut self) {
         if let Some(flusher) = self.flusher.take() {
-            if self.lock().is_forked() {
+            if self.is_forked() {
                 // It stayed in the other process: nobody to wait for.
                 std::mem::forget(flusher);
                 return;
@@ -240,5 +260,12 @@ impl Drop for LogFile {
     /// A file that was not finished (a panic, an early return) still gets its summary, but keeps its unfinished name.
     fn drop(&mut self) {
         self.stop_flusher();
+        if self.is_forked() {
+            // One owner too many, so that the file is never dropped here: that would write what is in memory twice.
+            std::mem::forget(Arc::clone(&self.shared));
+        }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -61,8 +61,6 @@ pub(super) struct State {
     time: f64,
     /// That of the last one known to be written, if any is [s].
     written_to: Option<f64>,
-    /// The process that writes: one that was forked from it has the file, too.
-    process: u32,
     stopped: bool,
 }
 
@@ -86,12 +84,24 @@ impl State {
             dirty_since: None,
             time: 0.0,
             written_to: None,
-            process: std::process::id(),
             stopped: false,
         };
         match begun {
             Ok(mcap) => state.mcap = Some(mcap),
             Err(error) => state.fail(&error, path),
+        }
+        state
+    }
+
+    /// In a process that was forked from the one that writes, after a message of a simulated time [s]: writes nothing.
+    pub(super) fn left_to_parent(time: f64, path: Option<&PathBuf>) -> Self {
+        let error = std::io::Error::other(
+            "this process was forked from the one that writes the log; reset the instance, or make one here",
+        );
+        let mut state = Self::new(Err(error.into()), Passed::default(), None, path);
+        state.time = time;
+        if let Some(failure) = &mut state.failure {
+            failure.time = time;
         }
         state
     }
@@ -152,24 +162,6 @@ impl State {
         self.unflushed = 0;
         self.dirty_since = None;
         self.written_to = (self.written > 0).then_some(self.time);
-    }
-
-    /// Writes nothing more in a process that was forked from the one that writes.
-    pub(super) fn leave_to_parent(&mut self, path: Option<&PathBuf>) {
-        if !self.is_forked() || self.mcap.is_none() {
-            return;
-        }
-        // Not dropped, which would write what is in memory, here too.
-        std::mem::forget(self.mcap.take());
-        let error = std::io::Error::other(
-            "this process was forked from the one that writes the log; reset the instance, or make one here",
-        );
-        self.fail(&error.into(), path);
-    }
-
-    /// Whether this process was forked from the one that writes, and has no thread that brings bytes to the system.
-    pub(super) fn is_forked(&self) -> bool {
-        self.process != std::process::id()
     }
 
     /// Writes the summary, brings everything to the disk and closes the file.
