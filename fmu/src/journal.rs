@@ -13,6 +13,7 @@ mod network;
 #[path = "journal/no_network.rs"]
 mod network;
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use sandgate::component::{Component, Mode, StepReport, Wish, saved_checksum};
@@ -43,7 +44,7 @@ pub(crate) struct Journal {
     /// File of the last log, and how often the component had jumped when it ended.
     before: Option<(PathBuf, u32)>,
     /// What the importer has set since the last step, while there is a network.
-    owned: Vec<u32>,
+    owned: BTreeSet<u32>,
     /// Whether a failure has been told.
     complained: bool,
     complaint: Option<String>,
@@ -69,7 +70,7 @@ impl Journal {
             log: None,
             network: None,
             before: None,
-            owned: Vec::new(),
+            owned: BTreeSet::new(),
             complained: false,
             complaint: None,
             unclosed: None,

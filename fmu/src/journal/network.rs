@@ -1,5 +1,7 @@
 //! Publications of an instance on Zenoh: what `sandgate::bus` does beside an importer.
 
+use std::collections::BTreeSet;
+
 use sandgate::bus::{Beside, ServeOptions, ZenohConfig};
 use sandgate::component::Component;
 use sandgate::wire::Observer;
@@ -42,7 +44,7 @@ impl Network {
     pub(super) fn apply(
         &mut self,
         component: &mut Component,
-        owned: &[u32],
+        owned: &BTreeSet<u32>,
         log: &mut dyn Observer,
     ) {
         self.0.apply(component, owned, log);

@@ -1,6 +1,8 @@
 //! Instead of `network` where the library is built without the feature `bus`: there is no session, and a configuration of
 //! one is refused when it is set.
 
+use std::collections::BTreeSet;
+
 use sandgate::component::Component;
 use sandgate::fmi::library::WITHOUT_ZENOH;
 use sandgate::wire::Observer;
@@ -27,7 +29,7 @@ impl Network {
         match *self {}
     }
 
-    pub(super) fn apply(&mut self, _: &mut Component, _: &[u32], _: &mut dyn Observer) {
+    pub(super) fn apply(&mut self, _: &mut Component, _: &BTreeSet<u32>, _: &mut dyn Observer) {
         match *self {}
     }
 

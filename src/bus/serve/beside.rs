@@ -26,7 +26,7 @@ use crate::component::{Component, StepReport, ValueReference};
 use crate::wire::foxglove::LogLevel;
 use crate::wire::messages::{AppliedEvent, Command};
 use crate::wire::{Both, Moment, Observer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::mpsc::sync_channel;
@@ -135,7 +135,7 @@ impl Beside {
     pub fn apply(
         &mut self,
         component: &mut Component,
-        owned: &[ValueReference],
+        owned: &BTreeSet<ValueReference>,
         other: &mut dyn Observer,
     ) {
         self.tell_notes(other);
@@ -173,7 +173,7 @@ impl Beside {
         &mut self,
         component: &mut Component,
         point: &SetPoint,
-        owned: &[ValueReference],
+        owned: &BTreeSet<ValueReference>,
         other: &mut dyn Observer,
     ) -> Result<(ValueReference, Vec<f64>), Refusal> {
         let inputs = [(point.variable.clone(), point.values.clone())];
@@ -212,7 +212,8 @@ impl Beside {
         if assignment.present(component)?.values == assignment.values {
             return Ok(());
         }
-        self.set(component, point, &[], other).map(drop)
+        self.set(component, point, &BTreeSet::new(), other)
+            .map(drop)
     }
 
     fn tell_clamped(&mut self, component: &mut Component, other: &mut dyn Observer) {
