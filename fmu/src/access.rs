@@ -1,4 +1,9 @@
 //! Values between the typed functions of the standards and the component's plain f64.
+//!
+//! Each tells which variables a refused call asked for, whatever it was refused for: arrays of values come as what their
+//! pointers gave, so that a bad one is told with them.
+
+mod value;
 
 use std::ffi::{CString, c_char};
 
@@ -8,100 +13,7 @@ use crate::fault::Fault;
 use crate::guard::{Out, Plain, Text};
 use crate::instance::Instance;
 use crate::log::text;
-
-/// A type that values of one kind of variable have at the border.
-pub(crate) trait Value: Copy {
-    /// Variables that take it.
-    const KIND: ValueKind;
-    /// Into the component; refuses what the kind does not hold.
-    fn enter(self) -> Result<f64, String>;
-    /// Out of the component.
-    fn leave(value: f64) -> Result<Self, String>;
-}
-
-impl Value for f64 {
-    const KIND: ValueKind = ValueKind::Real;
-
-    fn enter(self) -> Result<f64, String> {
-        Ok(self)
-    }
-
-    fn leave(value: f64) -> Result<Self, String> {
-        Ok(value)
-    }
-}
-
-/// FMI 2's Integer and Enumeration.
-impl Value for i32 {
-    const KIND: ValueKind = ValueKind::Integer;
-
-    fn enter(self) -> Result<f64, String> {
-        Ok(f64::from(self))
-    }
-
-    fn leave(value: f64) -> Result<Self, String> {
-        let inside = (f64::from(Self::MIN)..=f64::from(Self::MAX)).contains(&value);
-        if inside {
-            // In range and whole: nothing is lost.
-            Ok(value as Self)
-        } else {
-            Err(format!(
-                "{value} does not fit FMI 2's Integer; FMI 3 has Int64"
-            ))
-        }
-    }
-}
-
-/// FMI 3's Int64 and Enumeration.
-impl Value for i64 {
-    const KIND: ValueKind = ValueKind::Integer;
-
-    fn enter(self) -> Result<f64, String> {
-        let value = self as f64;
-        if self.unsigned_abs() <= 1 << 53 {
-            Ok(value)
-        } else {
-            Err(format!("{self} is beyond 2^53"))
-        }
-    }
-
-    fn leave(value: f64) -> Result<Self, String> {
-        // Counts stay far below 2^53: whole and in range.
-        Ok(value as Self)
-    }
-}
-
-/// A Boolean as the number it is in C: `int` in FMI 2, `bool` (one byte) in FMI 3.
-#[derive(Clone, Copy)]
-pub(crate) struct Flag(bool);
-
-impl Flag {
-    /// 0 or 1.
-    pub(crate) fn from_number(number: i64) -> Result<Self, String> {
-        match number {
-            0 => Ok(Self(false)),
-            1 => Ok(Self(true)),
-            other => Err(format!("found {other}, a Boolean is 0 or 1")),
-        }
-    }
-
-    /// 0 or 1.
-    pub(crate) fn number(self) -> u8 {
-        u8::from(self.0)
-    }
-}
-
-impl Value for Flag {
-    const KIND: ValueKind = ValueKind::Boolean;
-
-    fn enter(self) -> Result<f64, String> {
-        Ok(f64::from(self.number()))
-    }
-
-    fn leave(value: f64) -> Result<Self, String> {
-        Ok(Self(value != 0.0))
-    }
-}
+pub(crate) use value::{Flag, Value};
 
 /// Whose variables are got and set: an instance's, or those of a step that is running.
 pub(crate) trait Values {
@@ -125,12 +37,21 @@ pub(crate) fn get<V: Value, C: Plain>(
     count: usize,
     make: impl Fn(V) -> C,
 ) -> Result<(), Fault> {
-    let fits = out.check(count, "values");
-    let fits = fits.and_then(|()| check(from.table(), "get", references, V::KIND, count));
-    fits.inspect_err(|_| from.refused(references))?;
+    let got = read(from, references, out, count, make);
+    got.inspect_err(|_| from.refused(references))
+}
+
+fn read<V: Value, C: Plain>(
+    from: &mut (impl Values + ?Sized),
+    references: &[u32],
+    out: &mut Out<C>,
+    count: usize,
+    make: impl Fn(V) -> C,
+) -> Result<(), Fault> {
+    out.check(count, "values")?;
+    check(from.table(), "get", references, V::KIND, count)?;
     let mut values = vec![0.0; count];
-    let got = from.get(references, &mut values);
-    got.inspect_err(|_| from.refused(references))?;
+    from.get(references, &mut values)?;
     let made: Result<Vec<C>, String> = values
         .iter()
         .map(|value| V::leave(*value).map(&make))
@@ -142,11 +63,20 @@ pub(crate) fn get<V: Value, C: Plain>(
 pub(crate) fn set<V: Value, C: Copy>(
     into: &mut (impl Values + ?Sized),
     references: &[u32],
+    values: Result<&[C], Fault>,
+    make: impl Fn(C) -> Result<V, String>,
+) -> Result<(), Fault> {
+    let set = values.and_then(|values| write(into, references, values, make));
+    set.inspect_err(|_| into.refused(references))
+}
+
+fn write<V: Value, C: Copy>(
+    into: &mut (impl Values + ?Sized),
+    references: &[u32],
     values: &[C],
     make: impl Fn(C) -> Result<V, String>,
 ) -> Result<(), Fault> {
-    let fits = check(into.table(), "set", references, V::KIND, values.len());
-    fits.inspect_err(|_| into.refused(references))?;
+    check(into.table(), "set", references, V::KIND, values.len())?;
     let entered: Result<Vec<f64>, String> = values
         .iter()
         .map(|value| make(*value).and_then(V::enter))
@@ -158,14 +88,26 @@ pub(crate) fn set<V: Value, C: Copy>(
 pub(crate) fn set_texts(
     instance: &mut Instance,
     references: &[u32],
-    texts: &[Text],
+    texts: Result<&[Text], Fault>,
 ) -> Result<(), Fault> {
-    let texts: Result<Vec<&str>, Fault> = texts.iter().map(|text| text.get("values")).collect();
-    instance.set_texts(references, &texts?)
+    let texts: Result<Vec<&str>, Fault> =
+        texts.and_then(|texts| texts.iter().map(|text| text.get("values")).collect());
+    let set = texts.and_then(|texts| instance.set_texts(references, &texts));
+    set.inspect_err(|_| instance.refused(references))
 }
 
 /// Reads texts: pointers that are good until texts are read again.
 pub(crate) fn get_texts(
+    instance: &mut Instance,
+    references: &[u32],
+    out: &mut Out<*const c_char>,
+    count: usize,
+) -> Result<(), Fault> {
+    let got = read_texts(instance, references, out, count);
+    got.inspect_err(|_| instance.refused(references))
+}
+
+fn read_texts(
     instance: &mut Instance,
     references: &[u32],
     out: &mut Out<*const c_char>,
@@ -196,6 +138,18 @@ pub(crate) enum Above {
 
 /// Slopes of outputs: derivatives of order 1.
 pub(crate) fn output_derivatives(
+    from: &mut (impl Values + ?Sized),
+    references: &[u32],
+    orders: Result<&[i32], Fault>,
+    above: Above,
+    out: &mut Out<f64>,
+    count: usize,
+) -> Result<(), Fault> {
+    let got = orders.and_then(|orders| read_slopes(from, references, orders, above, out, count));
+    got.inspect_err(|_| from.refused(references))
+}
+
+fn read_slopes(
     from: &mut (impl Values + ?Sized),
     references: &[u32],
     orders: &[i32],
@@ -267,21 +221,5 @@ fn kind_name(kind: ValueKind) -> &'static str {
         ValueKind::Integer => "integer",
         ValueKind::Boolean => "Boolean",
         ValueKind::Text => "text",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_that_do_not_fit_are_refused() {
-        assert_eq!(<i32 as Value>::leave(-3.0), Ok(-3));
-        assert!(<i32 as Value>::leave(3e9).is_err());
-        assert_eq!(<i64 as Value>::leave(3e9), Ok(3_000_000_000));
-        assert_eq!(<i64 as Value>::enter(7), Ok(7.0));
-        assert!(<i64 as Value>::enter(i64::MAX).is_err());
-        assert!(Flag::from_number(2).is_err());
-        assert_eq!(Flag::from_number(1).map(Flag::number), Ok(1));
     }
 }

@@ -443,6 +443,9 @@ def test_calls_that_change_something_or_are_refused_are_in_the_log_with_what_the
         lib.sandgate_variable_by_name(handle, b"nope", ctypes.byref(unknown)),
         lib.sandgate_set_text(handle, ctypes.c_uint32(opening), b"x"),
         lib.sandgate_get(handle, ctypes.byref(unknown), one, ctypes.byref(found), one),
+        lib.sandgate_set(handle, ctypes.byref(ctypes.c_uint32(opening)), one, None, one),
+        lib.sandgate_set_text(handle, ctypes.c_uint32(opening), None),
+        lib.sandgate_get_text(handle, ctypes.c_uint32(opening), ctypes.byref(ctypes.c_char_p())),
         lib.sandgate_initialize(handle, ctypes.c_double(1.0), ctypes.c_double(2.0)),
     ]:
         assert refused != 0
@@ -455,6 +458,9 @@ def test_calls_that_change_something_or_are_refused_are_in_the_log_with_what_the
         ("variable_by_name", {"name": "nope"}),
         ("set_text", {"gate.sluice.opening": "x"}),
         ("get", {"variables": ["unknown reference 9999"], "count": 1}),
+        ("set", {"variables": ["gate.sluice.opening"], "count": 1}),
+        ("set_text", {"variables": ["gate.sluice.opening"], "count": 1}),
+        ("get_text", {"variables": ["gate.sluice.opening"], "count": 1}),
         ("initialize", {"start": 1.0, "stop": 2.0}),
     ]
 

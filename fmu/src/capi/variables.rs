@@ -118,8 +118,9 @@ pub(crate) extern "C" fn sandgate_set(
 ) -> i32 {
     code(instance.call("sandgate_set", Need::Sound, |i| {
         let references = references.slice(reference_count, "references")?;
-        let values = values.slice(value_count, "values")?;
-        i.set(references, values)
+        let values = values.slice(value_count, "values");
+        let set = values.and_then(|values| i.set(references, values));
+        set.inspect_err(|_| i.refused(references))
     }))
 }
 
@@ -155,7 +156,9 @@ fn read(
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn sandgate_set_text(instance: Handle, reference: u32, value: Text) -> i32 {
     code(instance.call("sandgate_set_text", Need::Sound, |i| {
-        i.set_texts(&[reference], &[value.get("value")?])
+        let text = value.get("value");
+        let set = text.and_then(|text| i.set_texts(&[reference], &[text]));
+        set.inspect_err(|_| i.refused(&[reference]))
     }))
 }
 

@@ -2,7 +2,7 @@
 
 use std::ffi::c_char;
 
-use crate::access::{Above, Flag, get, get_texts, output_derivatives, set, set_texts};
+use crate::access::{Above, Flag, Values as _, get, get_texts, output_derivatives, set, set_texts};
 use crate::fault::{Fault, Status};
 use crate::guard::{Handle, In, Need, Out, Text};
 
@@ -63,7 +63,7 @@ pub(crate) extern "C" fn fmi2GetString(
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2SetReal(c: Handle, vr: In<u32>, n: usize, value: In<f64>) -> Status {
     c.call("fmi2SetReal", Need::Sound, |i| {
-        set::<f64, _>(i, vr.slice(n, "vr")?, value.slice(n, "value")?, Ok)
+        set::<f64, _>(i, vr.slice(n, "vr")?, value.slice(n, "value"), Ok)
     })
     .into()
 }
@@ -76,7 +76,7 @@ pub(crate) extern "C" fn fmi2SetInteger(
     value: In<i32>,
 ) -> Status {
     c.call("fmi2SetInteger", Need::Sound, |i| {
-        set::<i32, _>(i, vr.slice(n, "vr")?, value.slice(n, "value")?, Ok)
+        set::<i32, _>(i, vr.slice(n, "vr")?, value.slice(n, "value"), Ok)
     })
     .into()
 }
@@ -89,7 +89,7 @@ pub(crate) extern "C" fn fmi2SetBoolean(
     value: In<i32>,
 ) -> Status {
     c.call("fmi2SetBoolean", Need::Sound, |i| {
-        let (vr, value) = (vr.slice(n, "vr")?, value.slice(n, "value")?);
+        let (vr, value) = (vr.slice(n, "vr")?, value.slice(n, "value"));
         set(i, vr, value, |v| Flag::from_number(v.into()))
     })
     .into()
@@ -103,7 +103,7 @@ pub(crate) extern "C" fn fmi2SetString(
     value: In<Text>,
 ) -> Status {
     c.call("fmi2SetString", Need::Sound, |i| {
-        set_texts(i, vr.slice(n, "vr")?, value.slice(n, "value")?)
+        set_texts(i, vr.slice(n, "vr")?, value.slice(n, "value"))
     })
     .into()
 }
@@ -134,13 +134,16 @@ pub(crate) extern "C" fn fmi2SetRealInputDerivatives(
 ) -> Status {
     c.call("fmi2SetRealInputDerivatives", Need::Sound, |i| {
         let vr = vr.slice(n, "vr")?;
-        if let Some(order) = order.slice(n, "order")?.iter().find(|order| **order != 1) {
-            return Err(Fault::border(format!(
-                "order: found {order}, allowed 1 (a slope over the next step)"
-            )));
-        }
-        let slopes = value.slice(n, "value")?;
-        i.set_slopes(vr, slopes)
+        let slopes = order.slice(n, "order").and_then(|orders| {
+            if let Some(order) = orders.iter().find(|order| **order != 1) {
+                return Err(Fault::border(format!(
+                    "order: found {order}, allowed 1 (a slope over the next step)"
+                )));
+            }
+            value.slice(n, "value")
+        });
+        let set = slopes.and_then(|slopes| i.set_slopes(vr, slopes));
+        set.inspect_err(|_| i.refused(vr))
     })
     .into()
 }
@@ -154,7 +157,7 @@ pub(crate) extern "C" fn fmi2GetRealOutputDerivatives(
     mut value: Out<f64>,
 ) -> Status {
     c.call("fmi2GetRealOutputDerivatives", Need::Sound, |i| {
-        let (vr, order) = (vr.slice(n, "vr")?, order.slice(n, "order")?);
+        let (vr, order) = (vr.slice(n, "vr")?, order.slice(n, "order"));
         // Above the highest order that there is, a derivative is 0, says FMI 2.0.4, section 4.2.1.
         output_derivatives(i, vr, order, Above::IsZero, &mut value, n)
     })

@@ -78,7 +78,7 @@ pub(crate) extern "C" fn fmi3SetFloat64(
         set::<f64, _>(
             i,
             vr.slice(n, "valueReferences")?,
-            values.slice(n_values, "values")?,
+            values.slice(n_values, "values"),
             Ok,
         )
     })
@@ -97,7 +97,7 @@ pub(crate) extern "C" fn fmi3SetInt64(
         set::<i64, _>(
             i,
             vr.slice(n, "valueReferences")?,
-            values.slice(n_values, "values")?,
+            values.slice(n_values, "values"),
             Ok,
         )
     })
@@ -115,7 +115,7 @@ pub(crate) extern "C" fn fmi3SetBoolean(
     c.visit("fmi3SetBoolean", |i| {
         let (vr, values) = (
             vr.slice(n, "valueReferences")?,
-            values.slice(n_values, "values")?,
+            values.slice(n_values, "values"),
         );
         set(i, vr, values, |v| Flag::from_number(v.into()))
     })
@@ -146,7 +146,7 @@ pub(crate) extern "C" fn fmi3SetString(
 ) -> Status {
     c.call("fmi3SetString", Need::Sound, |i| {
         let references = vr.slice(n, "valueReferences")?;
-        set_texts(i, references, values.slice(n_values, "values")?)
+        set_texts(i, references, values.slice(n_values, "values"))
     })
     .into()
 }
@@ -161,7 +161,7 @@ pub(crate) extern "C" fn fmi3GetOutputDerivatives(
     n_values: usize,
 ) -> Status {
     c.visit("fmi3GetOutputDerivatives", |i| {
-        let (vr, orders) = (vr.slice(n, "valueReferences")?, orders.slice(n, "orders")?);
+        let (vr, orders) = (vr.slice(n, "valueReferences")?, orders.slice(n, "orders"));
         output_derivatives(i, vr, orders, Above::IsRefused, &mut values, n_values)
     })
     .into()
