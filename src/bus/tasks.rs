@@ -16,6 +16,8 @@ use std::time::Duration;
 
 /// Requests that may wait.
 pub(super) const WAITING_REQUESTS: usize = 256;
+/// Bytes of their bodies that may wait: two of the longest, since each holds a state and is held as text, too.
+pub(super) const WAITING_BYTES: usize = 128 << 20;
 /// Set-points that may wait where requests stand between them; more if more variables can be set. Of those beyond it the
 /// oldest that has a newer one goes.
 const WAITING_SET_POINTS: usize = 192;
@@ -46,6 +48,8 @@ pub(super) enum Task {
 pub(super) enum NoRoom {
     /// As many wait as may.
     Full,
+    /// As many bytes wait as may.
+    Heavy,
     /// Who took them has ended.
     Ended,
 }
@@ -63,6 +67,14 @@ impl Entry {
 
     fn is_odd(&self) -> bool {
         !self.sure && !self.is_call()
+    }
+
+    /// Bytes of a request's body.
+    fn bytes(&self) -> usize {
+        match &self.task {
+            Task::Call { body, .. } => body.len(),
+            Task::SetPoint(_) => 0,
+        }
     }
 
     /// The variable of a set-point that surely can be taken.
@@ -116,10 +128,15 @@ impl Giver {
         if calls.count() >= WAITING_REQUESTS {
             return Err((NoRoom::Full, call));
         }
-        waiting.entries.push_back(Entry {
+        let entry = Entry {
             task: call,
             sure: false,
-        });
+        };
+        let bytes = waiting.entries.iter().map(Entry::bytes).sum::<usize>();
+        if bytes + entry.bytes() > WAITING_BYTES {
+            return Err((NoRoom::Heavy, entry.task));
+        }
+        waiting.entries.push_back(entry);
         drop(waiting);
         self.0.news.notify_one();
         Ok(())

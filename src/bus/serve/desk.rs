@@ -12,7 +12,7 @@ use crate::bus::reply::Reply;
 use crate::bus::request::{LONGEST_TOLD, Request};
 use crate::bus::set_point::SetPoint;
 use crate::bus::status::{Shared, lock};
-use crate::bus::tasks::{Giver, NoRoom, Task, WAITING_ODD_POINTS, WAITING_REQUESTS};
+use crate::bus::tasks::{Giver, NoRoom, Task, WAITING_BYTES, WAITING_ODD_POINTS, WAITING_REQUESTS};
 use crate::bus::verb::Verb;
 use std::collections::HashMap;
 use std::sync::atomic::Ordering::Relaxed;
@@ -158,10 +158,12 @@ impl Desk {
         match read {
             Ok(request) => {
                 waiting.req.clone_from(&request.req);
-                let names = [verb, request.req.clone(), request.client.clone(), body];
                 match self.known_here(&request) {
-                    Some(reply) => self.answer_here(waiting, reply, names),
-                    None => self.hand_in(request, waiting, names),
+                    Some(reply) => {
+                        let names = [verb, request.req, request.client, body];
+                        self.answer_here(waiting, reply, names);
+                    }
+                    None => self.hand_in(request, waiting, body),
                 }
             }
             Err(refusal) => {
@@ -190,8 +192,7 @@ impl Desk {
     }
 
     /// Gives the component a request, or refuses it where there is no room or no server any more.
-    fn hand_in(&self, request: Request, waiting: Waiting, names: [String; 4]) {
-        let [.., body] = names.clone();
+    fn hand_in(&self, request: Request, waiting: Waiting, body: String) {
         let task = Task::Call {
             request: Box::new(request),
             body,
@@ -202,11 +203,18 @@ impl Desk {
         };
         let refusal = match why {
             NoRoom::Full => busy(WAITING_REQUESTS, "requests"),
+            NoRoom::Heavy => busy(WAITING_BYTES >> 20, "MiB of requests"),
             NoRoom::Ended => ended(),
         };
-        if let Task::Call { request, asked, .. } = task {
+        if let Task::Call {
+            request,
+            body,
+            asked,
+        } = task
+        {
             let reply = Reply::refusal(&request.req, &refusal, &self.shared.status());
-            self.note(&reply, names);
+            let verb = request.verb.name().to_owned();
+            self.note(&reply, [verb, request.req, request.client, body]);
             asked.answer(reply);
         }
     }
@@ -222,7 +230,7 @@ impl Desk {
             verb,
             req,
             client,
-            body,
+            body: shortened(body),
             status: reply.status(),
             reply: reply.body.clone(),
         };
@@ -243,7 +251,7 @@ impl Desk {
             let given = self.tasks.point(point, self.shared.saturates());
             given.map_err(|why| match why {
                 NoRoom::Ended => ended(),
-                NoRoom::Full => {
+                NoRoom::Full | NoRoom::Heavy => {
                     let what = "set-points that will hardly be taken";
                     let message = format!("{key}: {WAITING_ODD_POINTS} {what} wait already");
                     Refusal::new(Code::Busy, message)
@@ -286,6 +294,16 @@ impl Desk {
             waiting.refuse(&busy(WAITING_REPLIES, "replies"));
         }
     }
+}
+
+/// As much of a body as is kept of what was answered without the component: notes wait by number, whatever their length.
+fn shortened(mut body: String) -> String {
+    if body.len() > LONGEST_TOLD {
+        let whole = |end: &usize| body.is_char_boundary(*end);
+        body.truncate((0..=LONGEST_TOLD).rev().find(whole).unwrap_or(0));
+        body.shrink_to_fit();
+    }
+    body
 }
 
 /// Parameters after `?` would be silently ignored; those of Zenoh itself begin with an underscore.

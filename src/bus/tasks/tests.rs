@@ -119,6 +119,30 @@ fn between_many_requests_older_set_points_give_way_and_the_newest_of_each_variab
 }
 
 #[test]
+fn requests_wait_as_long_as_there_is_memory_for_their_bodies() {
+    let (giver, taker) = empty();
+    let long = |req| {
+        let Task::Call { request, asked, .. } = call(req) else {
+            panic!("a call is a call")
+        };
+        let body = String::from_utf8(vec![0; WAITING_BYTES / 2]).unwrap();
+        Task::Call {
+            request,
+            body,
+            asked,
+        }
+    };
+    giver.call(long(1)).ok().unwrap();
+    giver.call(long(2)).ok().unwrap();
+    let (why, back) = giver.call(call(3)).err().unwrap();
+    assert!(why == NoRoom::Heavy && matches!(back, Task::Call { .. }));
+    // A set-point has room of its own.
+    assert_eq!(put(&giver, GATE, "0.5"), Ok(None));
+    assert!(taker.take(Duration::ZERO).is_ok());
+    assert!(giver.call(call(3)).is_ok());
+}
+
+#[test]
 fn who_takes_waits_for_so_long_and_ends_with_who_gives() {
     let (giver, taker) = empty();
     let none = taker.take(Duration::from_millis(1)).err();
