@@ -2,6 +2,7 @@
 //! component was reset or restored) and within it.
 
 use super::error::RecordError;
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 /// Names of a file.
@@ -78,7 +79,7 @@ impl Place {
             return Err(RecordError::Exists { path });
         }
         std::fs::File::create_new(&part).map_err(|source| match source.kind() {
-            std::io::ErrorKind::AlreadyExists => RecordError::Exists { path: part },
+            ErrorKind::AlreadyExists => RecordError::Exists { path: part },
             _ => RecordError::Create { path: part, source },
         })
     }
@@ -90,10 +91,58 @@ impl Place {
             path: path.clone(),
             why,
         };
-        if path.exists() {
-            return Err(failed("a file of that name appeared meanwhile".to_owned()));
+        let appeared = || failed("a file of that name appeared meanwhile".to_owned());
+        // A second name is given only where there is none, while renaming takes the place of what has come since one looked.
+        match std::fs::hard_link(&part, &path) {
+            Ok(()) => std::fs::remove_file(&part).map_err(|error| {
+                failed(format!(
+                    "it has that name, too, and the first one cannot be removed ({error})"
+                ))
+            })?,
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => return Err(appeared()),
+            // There are file systems without second names.
+            Err(_) if path.symlink_metadata().is_ok() => return Err(appeared()),
+            Err(_) => std::fs::rename(&part, &path).map_err(|error| failed(error.to_string()))?,
         }
-        std::fs::rename(&part, &path).map_err(|error| failed(error.to_string()))?;
         Ok(path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_finished_file_has_its_name_and_no_other() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let place = Place::alone(&folder.path().join("run.mcap"));
+        drop(place.create().unwrap());
+        let path = place.rename().unwrap();
+        assert!(path == place.path() && path.is_file());
+        assert!(!place.part().exists());
+    }
+
+    #[test]
+    fn what_appeared_meanwhile_keeps_the_name() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let place = Place::alone(&folder.path().join("run.mcap"));
+        drop(place.create().unwrap());
+        std::fs::write(place.path(), "somebody's").unwrap();
+        let refused = place.rename().unwrap_err().to_string();
+        assert!(refused.contains("appeared meanwhile"), "{refused}");
+        assert_eq!(std::fs::read(place.path()).unwrap(), b"somebody's");
+        assert!(place.part().is_file());
+    }
+
+    /// A link to nowhere does not exist for who follows it, so that only the system knows that the name is taken.
+    #[cfg(unix)]
+    #[test]
+    fn a_name_is_given_only_where_the_system_has_none() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        let place = Place::alone(&folder.path().join("run.mcap"));
+        drop(place.create().unwrap());
+        std::os::unix::fs::symlink("nowhere", place.path()).unwrap();
+        assert!(place.rename().is_err());
+        assert!(place.path().is_symlink() && place.part().is_file());
     }
 }
