@@ -2,6 +2,7 @@
 
 use crate::component;
 use crate::wire::keys::BadInstance;
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 /// Errors of writing a log.
@@ -22,7 +23,7 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// The file cannot be created.
-    #[error("cannot create log file {path}: {source}; choose a folder that can be written")]
+    #[error("cannot create log file {path}: {source}; {}", remedy(.source.kind()))]
     Create {
         /// The file.
         path: PathBuf,
@@ -50,6 +51,19 @@ pub enum RecordError {
     /// The component refused to be read.
     #[error("cannot read the component for the log: {0}")]
     Component(#[from] component::Error),
+}
+
+/// What to do where a log cannot be created.
+fn remedy(why: ErrorKind) -> &'static str {
+    match why {
+        ErrorKind::NotFound => "make the folder first, or choose one that there is",
+        ErrorKind::NotADirectory => "what stands there is a file; choose a folder",
+        ErrorKind::InvalidFilename => {
+            "choose a shorter name; most file systems allow 255 bytes, .part included"
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room or choose another folder",
+        _ => "choose a folder that can be written",
+    }
 }
 
 /// The first write that failed. After it nothing more is written, so that the file is a whole log up to a cut.

@@ -122,6 +122,23 @@ mod tests {
         assert!(!place.part().exists());
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn what_cannot_be_created_says_what_to_do_about_it() {
+        let folder = temp_dir::TempDir::new().unwrap();
+        std::fs::write(folder.path().join("file"), "").unwrap();
+        let long = "long".repeat(100);
+        for (name, remedy) in [
+            ("none/run.mcap", "make the folder first"),
+            ("file/run.mcap", "what stands there is a file"),
+            (long.as_str(), "choose a shorter name"),
+        ] {
+            let place = Place::alone(&folder.path().join(name));
+            let refused = place.create().unwrap_err().to_string();
+            assert!(refused.contains(remedy), "{refused}");
+        }
+    }
+
     #[test]
     fn what_appeared_meanwhile_keeps_the_name() {
         let folder = temp_dir::TempDir::new().unwrap();
