@@ -602,6 +602,12 @@ def test_only_users_with_their_password_get_in_and_do_what_the_list_allows(tmp_p
                 session_of(server.endpoint, user, secret)
         with session_of(server.endpoint, "plc", "secret") as plc, session_of(server.endpoint, "guest", "guest") as guest:
             assert Component(guest, "small_silo").ask("status")["step"] == 0
+            assert Component(guest, "small_silo").ask("describe")["schemas"]
+            told = []
+            watch = guest.liveliness().declare_subscriber(f"{BASE}/@alive", told.append, history=True)
+            until(lambda: told)
+            assert told[0].kind == zenoh.SampleKind.PUT
+            watch.undeclare()
             # Not in the list: nobody answers.
             for session in (plc, guest):
                 with pytest.raises(TimeoutError):
