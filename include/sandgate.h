@@ -12,8 +12,9 @@
  *              `const char *` belongs to the library; how long it stays is said at each function.
  *   Errors     Functions that return int32_t give a sandgate_status; sandgate_last_error has the text. A refused call
  *              changes nothing and the instance goes on; after SANDGATE_STEP_FAILED only reading, restore, reset and
- *              terminate are allowed; after SANDGATE_BROKEN only restore, reset and free. No call ever ends the
- *              process, changes the locale, the working directory, signal handlers or the floating-point mode.
+ *              terminate are allowed; after SANDGATE_BROKEN only restore, reset and free. No call changes the
+ *              locale, the working directory, signal handlers or the floating-point mode, and none ends the process, but
+ *              where memory runs out, or a log meets a limit of file sizes with SIGXFSZ not ignored (docs/c.md).
  *   Files      None is read or written but those that you name: by sandgate_create_from_file and by the parameters
  *              log.path (docs/logs.md) and zenoh.config (docs/zenoh.md).
  *   Results    The same calls give the same bits, whatever the number of threads.
@@ -134,7 +135,7 @@ typedef void (*sandgate_logger)(void *user, const char *category, const char *me
 /* SANDGATE_ABI_VERSION of the library. Compare it with the header's before anything else. */
 uint32_t sandgate_abi_version(void);
 
-/* Version of the program, as "0.1.0". Stays as long as the library is loaded. */
+/* Version of the program, three numbers with points between them. Stays as long as the library is loaded. */
 const char *sandgate_version(void);
 
 /* What the library can do: bits of sandgate_capability. Ask before you rely on one that a later version may add. */

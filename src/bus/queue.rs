@@ -9,7 +9,7 @@ use super::status::lock;
 use std::collections::{HashSet, VecDeque};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
-/// Batches that may wait for the publishing thread; one batch a communication step.
+/// Batches that may wait for the publishing thread: what a step, a line of `out/log` or a jump publishes.
 const WAITING_BATCHES: usize = 256;
 
 /// What is published together.
