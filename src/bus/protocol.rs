@@ -19,6 +19,7 @@ use super::status::Status;
 use super::values::Assignment;
 use super::verb::Verb;
 use crate::component::{self, Component, Mode, step_end};
+use crate::math::panic_text;
 use crate::wire::Observer;
 use crate::wire::messages::AppliedEvent;
 use drive::{advance, assign};
@@ -210,11 +211,7 @@ impl Protocol {
     ) -> Result<T, Refusal> {
         catch_unwind(AssertUnwindSafe(|| call(self))).unwrap_or_else(|panic| {
             self.broken = true;
-            let what = panic
-                .downcast_ref::<&str>()
-                .map(|text| (*text).to_owned())
-                .or_else(|| panic.downcast_ref::<String>().cloned())
-                .unwrap_or_else(|| "panic".into());
+            let what = panic_text(panic.as_ref());
             Err(Refusal::new(
                 Code::Internal,
                 format!(

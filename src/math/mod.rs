@@ -9,6 +9,7 @@
 mod geometry;
 mod lanes;
 mod launch;
+mod panicked;
 mod workers;
 
 pub use geometry::Geometry;
@@ -19,6 +20,7 @@ pub use lanes::{Arch, Four, LANES, Lanes, Portable, Quad};
 #[cfg(feature = "record")]
 pub(crate) use launch::launch;
 pub use launch::{Launcher, start_threads_by};
+pub use panicked::panic_text;
 pub use workers::{CHUNK, Workers};
 
 /// A vector of D components.

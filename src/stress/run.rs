@@ -5,6 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use serde::{Deserialize, Serialize};
 
 use crate::component::{Component, Error};
+use crate::math::panic_text;
 use crate::scene::{Scene, SceneErrors};
 
 use super::checks::{Check, Failure};
@@ -88,11 +89,8 @@ impl Outcome {
 /// Runs a case.
 #[must_use]
 pub fn run(case: &Case, bounds: &Bounds) -> Outcome {
-    catch_unwind(AssertUnwindSafe(|| unguarded(case, bounds))).unwrap_or_else(|cause| {
-        let text = cause.downcast_ref::<&str>().map(|s| (*s).to_owned());
-        let text = text.or_else(|| cause.downcast_ref::<String>().cloned());
-        Outcome::failed(Check::Panic, text.unwrap_or_default())
-    })
+    catch_unwind(AssertUnwindSafe(|| unguarded(case, bounds)))
+        .unwrap_or_else(|cause| Outcome::failed(Check::Panic, panic_text(cause.as_ref())))
 }
 
 fn unguarded(case: &Case, bounds: &Bounds) -> Outcome {

@@ -1,10 +1,11 @@
 //! Instances behind the pointer that callers hold, and the wall that panics and second calls run into.
 
-use std::any::Any;
 use std::cell::{Cell, UnsafeCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 use std::sync::atomic::{AtomicU8, Ordering};
+
+use sandgate::math::panic_text;
 
 use super::arithmetic::inside;
 use crate::access::Values;
@@ -241,15 +242,7 @@ fn guarded<T>(
 
 /// Runs `work` and turns a panic into its message.
 pub(crate) fn shield<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| message(payload.as_ref()))
-}
-
-fn message(payload: &(dyn Any + Send)) -> String {
-    payload
-        .downcast_ref::<&str>()
-        .map(|text| (*text).to_owned())
-        .or_else(|| payload.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "panic".to_owned())
+    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| panic_text(payload.as_ref()))
 }
 
 #[cfg(test)]
