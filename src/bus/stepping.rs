@@ -166,7 +166,8 @@ impl Stepper<'_> {
                 tell_refused(time, point, &refusal, observer);
             }
         }
-        self.publish_status();
+        // All else of the status is what it was, and takes a walk over all particles.
+        self.shared.set_saturates(self.component.saturates_inputs());
     }
 
     /// Carries out a request and answers who asked. Whether the server ends after it.

@@ -212,7 +212,7 @@ impl Component {
                     what,
                     found: shown(reached),
                     allowed: format!("0 to {}", shown_bound(most)),
-                    remedy: String::new(),
+                    remedy: "give another slope; 0 holds the value".to_owned(),
                 });
             }
             notes.push(saturated(&what, reached, reached.clamp(0.0, most)));
