@@ -13,7 +13,8 @@
 
 use std::f64::consts::PI;
 
-use super::flats::reach;
+use super::courses::of_plane;
+use super::flats::{Face, crossings, extent};
 use crate::kernel::WendlandC2;
 use crate::math::{Vector, dot, norm, scale, sub};
 
@@ -186,41 +187,46 @@ pub fn box_elements<const D: usize>(
     elements
 }
 
-/// Centres of the elements of a plane in the domain, `spacing` wide. The grid starts at the domain's lower corner.
+/// (centre, length or area over that of a spacing) of the elements of a plane in the domain, as far as it is not behind `planes`, other
+/// walls. They count from the faces that cross it, as the rows of [`super::plane_points`] do; else from the domain's lower corner.
 #[must_use]
 pub fn plane_elements<const D: usize>(
-    point: &Vector<D>,
-    normal: &Vector<D>,
-    lower: &Vector<D>,
-    upper: &Vector<D>,
+    (point, normal): (&Vector<D>, &Vector<D>),
+    (faces, planes): (&[Face<D>], &[Face<D>]),
+    (lower, upper): (&Vector<D>, &Vector<D>),
     spacing: f64,
-) -> Vec<Vector<D>> {
+) -> Vec<(Vector<D>, f64)> {
     let along = tangents(normal);
     let onto = |x: &Vector<D>| -> Vector<D> {
         let off = dot(&sub(x, point), normal);
         std::array::from_fn(|k| x[k] - off * normal[k])
     };
     let start = onto(lower);
-    let range = |tangent: &Vector<D>| reach(tangent, &start, (lower, upper), spacing);
-    let across = if D == 2 { 0..1 } else { range(&along[1]) };
+    let courses = |tangent: &Vector<D>| {
+        let way = extent(tangent, &start, (lower, upper));
+        of_plane(&crossings(faces, tangent, &start), way, spacing)
+    };
+    let across = if D == 2 {
+        vec![(0.0, spacing)]
+    } else {
+        courses(&along[1])
+    };
     let inside = |x: &Vector<D>| {
         // Along its own axis a plane may lie outside the domain.
         (0..D).all(|k| normal[k].abs() > 1.0 - 1e-12 || (x[k] > lower[k] && x[k] < upper[k]))
     };
-    let mut centres = Vec::new();
-    for a in range(&along[0]) {
-        for b in across.clone() {
-            let x: Vector<D> = std::array::from_fn(|k| {
-                start[k]
-                    + (a as f64 + 0.5) * spacing * along[0][k]
-                    + (b as f64 + 0.5) * spacing * along[1][k]
-            });
-            if inside(&x) {
-                centres.push(x);
+    let is_shown = |x: &Vector<D>| planes.iter().all(|(p, n)| dot(&sub(x, p), n) > 0.0);
+    let mut elements = Vec::new();
+    for (a, long) in courses(&along[0]) {
+        for (b, wide) in &across {
+            let x: Vector<D> =
+                std::array::from_fn(|k| start[k] + a * along[0][k] + b * along[1][k]);
+            if inside(&x) && is_shown(&x) {
+                elements.push((x, long / spacing * (wide / spacing)));
             }
         }
     }
-    centres
+    elements
 }
 
 #[cfg(test)]
@@ -268,13 +274,12 @@ mod tests {
         let (k2, k3) = (WendlandC2::<2>::new(0.2), WendlandC2::<3>::new(0.2));
         let line = polyline_elements(&[[-1.0, 0.0], [1.0, 0.0]], false, dp);
         let plane = plane_elements(
-            &[0.0; 3],
-            &[0.0, 0.0, 1.0],
-            &[-0.7, -0.7, -0.1],
-            &[0.7, 0.7, 1.0],
+            (&[0.0; 3], &[0.0, 0.0, 1.0]),
+            (&[], &[]),
+            (&[-0.7, -0.7, -0.1], &[0.7, 0.7, 1.0]),
             dp,
         );
-        let floor: Vec<_> = plane.iter().map(|x| (*x, [0.0, 0.0, 1.0], dp)).collect();
+        let floor: Vec<_> = plane.iter().map(|x| (x.0, [0.0, 0.0, 1.0], dp)).collect();
         for front in [1e-6, 0.01, 0.03, 0.05, 0.1, 0.2, 0.35] {
             for shift in [0.0, 0.02, 0.05] {
                 let got = gamma(&k2, &[shift, front], &line);
@@ -304,6 +309,25 @@ mod tests {
             .collect();
         let got = gamma(&kernel, &[1e-5, 1e-5], &seen);
         assert!((got - 0.75).abs() < 5e-3, "{got}");
+    }
+
+    /// A floor and a side, planes that the domain goes on behind, a quarter of a spacing off its lattice.
+    #[test]
+    fn planes_end_where_they_meet() {
+        let dp = 0.1;
+        let kernel = WendlandC2::<2>::new(0.2);
+        let domain = (&[-0.425, -0.425], &[1.0, 1.0]);
+        let (floor, side) = (([0.0; 2], [0.0, 1.0]), ([0.0; 2], [1.0, 0.0]));
+        let elements = |own: &Face<2>, other: &Face<2>| -> Vec<_> {
+            let others = [*other];
+            plane_elements((&own.0, &own.1), (&others, &others), domain, dp)
+                .into_iter()
+                .map(|(x, share)| (x, own.1, share * dp))
+                .collect()
+        };
+        let mut corner = elements(&floor, &side);
+        corner.extend(elements(&side, &floor));
+        assert!((gamma(&kernel, &[1e-5, 1e-5], &corner) - 0.25).abs() < 5e-3);
     }
 
     #[test]

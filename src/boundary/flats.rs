@@ -1,7 +1,5 @@
 //! Where wall points lie: rows behind planes and in boxes.
 
-use std::ops::Range;
-
 use super::ROWS;
 use super::courses::{of_box, of_plane};
 use crate::math::{Vector, add, dot, norm, scale, sub};
@@ -67,7 +65,11 @@ pub fn plane_points<const D: usize>(
 }
 
 /// Where faces at right angles to a direction stand along it, from `start`.
-fn crossings<const D: usize>(faces: &[Face<D>], along: &Vector<D>, start: &Vector<D>) -> Vec<f64> {
+pub(super) fn crossings<const D: usize>(
+    faces: &[Face<D>],
+    along: &Vector<D>,
+    start: &Vector<D>,
+) -> Vec<f64> {
     faces
         .iter()
         .filter(|(_, normal)| dot(normal, along).abs() > 1.0 - 1e-9)
@@ -81,7 +83,7 @@ fn is_along<const D: usize>(tangent: &Vector<D>, k: usize) -> bool {
 }
 
 /// From where to where a box reaches along a tangent, from `start`.
-fn extent<const D: usize>(
+pub(super) fn extent<const D: usize>(
     tangent: &Vector<D>,
     start: &Vector<D>,
     (lower, upper): (&Vector<D>, &Vector<D>),
@@ -93,18 +95,6 @@ fn extent<const D: usize>(
         most += ends[0].max(ends[1]);
     }
     (least, most)
-}
-
-/// Numbers n of the places start + (n + 1/2) spacing tangent that may lie in the box, and a few more. In a domain that is long along
-/// one axis planes across it have few.
-pub(super) fn reach<const D: usize>(
-    tangent: &Vector<D>,
-    start: &Vector<D>,
-    corners: (&Vector<D>, &Vector<D>),
-    spacing: f64,
-) -> Range<i64> {
-    let (least, most) = extent(tangent, start, corners);
-    (least / spacing).floor() as i64 - 2..(most / spacing).ceil() as i64 + 2
 }
 
 /// Unit vectors along a plane with this unit normal, at right angles: the other axes for an axis-aligned plane (so that its

@@ -1,8 +1,8 @@
 //! Walls as elements of their surface, for scheme `paper_b`.
 
-use crate::boundary::{WallPoints, box_elements, plane_elements, polyline_elements};
+use crate::boundary::{Face, WallPoints, box_elements, plane_elements, polyline_elements};
 
-use super::build::group;
+use super::build::{faces_at, group, planes_beside};
 use super::{ForceTarget, Scene, WallGeometry, narrow};
 
 /// One point an element, with its length (in space its area) over that of a spacing as its weight.
@@ -32,8 +32,15 @@ pub(super) fn elements<const D: usize>(scene: &Scene) -> WallPoints<D> {
             WallGeometry::Plane { point, normal } => {
                 let normal = narrow(normal);
                 let (lower, upper) = (narrow(&scene.domain.lower), narrow(&scene.domain.upper));
-                for x in plane_elements::<D>(&narrow(point), &normal, &lower, &upper, dp) {
-                    add(x, normal, dp);
+                let faces = faces_at(scene, n);
+                let planes: Vec<Face<D>> = planes_beside(scene, n);
+                for (x, share) in plane_elements::<D>(
+                    (&narrow(point), &normal),
+                    (&faces, &planes),
+                    (&lower, &upper),
+                    dp,
+                ) {
+                    points.push(x, [0.0; D], normal, share, n as u16);
                 }
             }
         }

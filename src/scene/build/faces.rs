@@ -7,7 +7,7 @@ use crate::scene::{Point, Scene, Wall, WallGeometry};
 use super::narrow;
 
 /// Faces of the walls that stand still to a wall and meet it.
-pub(super) fn faces_at<const D: usize>(scene: &Scene, wall: usize) -> Vec<Face<D>> {
+pub(in crate::scene) fn faces_at<const D: usize>(scene: &Scene, wall: usize) -> Vec<Face<D>> {
     let dp = scene.numerics.spacing;
     let own = &scene.walls[wall];
     let others = scene.walls.iter().enumerate();
@@ -25,6 +25,15 @@ pub(super) fn faces_at<const D: usize>(scene: &Scene, wall: usize) -> Vec<Face<D
         }
     }
     met
+}
+
+/// Walls that are planes, but for this one.
+pub(in crate::scene) fn planes_beside<const D: usize>(scene: &Scene, wall: usize) -> Vec<Face<D>> {
+    let others = scene.walls.iter().enumerate().filter(|(n, _)| *n != wall);
+    others
+        .filter(|(_, other)| matches!(other.geometry, WallGeometry::Plane { .. }))
+        .flat_map(|(_, other)| faces_of(other))
+        .collect()
 }
 
 /// (point, normal) of the faces of a wall.

@@ -29,6 +29,7 @@ use particles::{spins, state};
 use plates::{plates, with_plates};
 use walls::{movers, walls};
 
+pub(super) use faces::{faces_at, planes_beside};
 pub use masses::BodyMass;
 pub(super) use walls::group;
 pub(crate) use walls::rigid_motion;
