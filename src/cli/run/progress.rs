@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::summary::pace;
 use crate::component::{Component, Intermediate};
 
 /// Parts a bar is divided into; indicatif counts in whole numbers.
@@ -27,18 +28,18 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Starts at simulated time `from` [s]; standard error decides between bar and lines.
+    /// Starts at simulated time `from` [s]; standard error decides between bar and lines. Nothing is drawn before
+    /// [`Progress::show`], so that what is told until then has lines of its own.
     pub(super) fn start(name: &str, from: f64, until: f64) -> Self {
         let bar = std::io::IsTerminal::is_terminal(&std::io::stderr()).then(|| {
-            let bar =
-                ProgressBar::with_draw_target(Some(PARTS as u64), ProgressDrawTarget::stderr());
-            if let Ok(style) =
-                ProgressStyle::with_template("{prefix} {wide_bar} {percent:>3} %  {msg}")
-            {
-                bar.set_style(style);
+            let target = ProgressDrawTarget::stderr();
+            let bar = ProgressBar::with_draw_target(Some(PARTS as u64), target);
+            // A line that wraps is taken away with those around it, such as the answer to Ctrl-C: the text is cut at the
+            // terminal's width, and what it can do without stands last.
+            match ProgressStyle::with_template("{bar:16} {percent:>3} %  {wide_msg}") {
+                Ok(style) => bar.with_style(style),
+                Err(_) => bar,
             }
-            bar.set_prefix(name.to_owned());
-            bar
         });
         let now = Instant::now();
         Self {
@@ -80,6 +81,14 @@ impl Progress {
         }
     }
 
+    /// Tells a line above the bar.
+    pub(super) fn tell(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| tell!("{text}")),
+            None => tell!("{text}"),
+        }
+    }
+
     /// Takes the bar away; the summary follows.
     pub(super) fn finish(&self) {
         if let Some(bar) = &self.bar {
@@ -97,10 +106,10 @@ impl Progress {
             _ => "unknown".to_owned(),
         };
         format!(
-            "t = {:.3} of {} s  ETA {left}  {:.3} x real time  {} particles  mass in {:.4} out {:.4} present {:.4} error {} kg",
+            "t = {:.3} of {} s  ETA {left}  {}  {} particles  mass in {:.4} out {:.4} present {:.4} error {} kg",
             time,
             self.until,
-            done / wall.max(1e-9),
+            pace(done, wall),
             component.statistics().particles,
             ledger.inflow,
             ledger.outflow,

@@ -149,6 +149,7 @@ impl Session {
         };
         session.write_summary("running", None)?;
         session.announce()?;
+        session.progress.show(&session.component);
         Ok(session)
     }
 
@@ -213,7 +214,8 @@ impl Session {
                 Err(error @ CliError::File { .. }) => {
                     if !std::mem::replace(&mut self.warned, true) {
                         let text = error.as_warning();
-                        tell!("warning: {text}; the run goes on without new checkpoints");
+                        let text = format!("warning: {text}; the run goes on without new checkpoints");
+                        self.progress.tell(&text);
                     }
                     self.plan_checkpoint();
                 }

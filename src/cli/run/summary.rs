@@ -154,9 +154,9 @@ pub(super) fn table(session: &Session, status: &str) -> String {
             figures.communication_steps, figures.steps, figures.iterations
         ),
         format!(
-            "  time    wall {wall:.2} s, CPU {cpu:.2} s on {} threads, {:.3} x real time",
+            "  time    wall {wall:.2} s, CPU {cpu:.2} s on {} threads, {}",
             session.threads(),
-            simulated / wall.max(1e-9)
+            pace(simulated, wall)
         ),
         format!(
             "  mass    initial {} + in {} - out {} = present {} kg, error {}",
@@ -206,6 +206,17 @@ fn variable_rows(session: &Session) -> Vec<String> {
     rows
 }
 
+/// How fast `simulated` seconds went by in `wall` seconds, for people. A slow run says its pace, too: three decimals of it
+/// would be 0.
+pub(super) fn pace(simulated: f64, wall: f64) -> String {
+    let factor = simulated / wall.max(1e-9);
+    if factor <= 0.0 || factor >= 0.1 {
+        format!("{factor:.3} x real time")
+    } else {
+        format!("{factor:.1e} x real time")
+    }
+}
+
 /// Six significant digits, for people; files hold all digits.
 pub(in crate::cli) fn short(value: f64) -> String {
     let size = value.abs();
@@ -221,5 +232,22 @@ pub(in crate::cli) fn short(value: f64) -> String {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::pace;
+
+    #[test]
+    fn slow_runs_say_their_pace_with_digits_that_tell_something() {
+        for (simulated, wall, said) in [
+            (3.0, 2.0, "1.500 x real time"),
+            (0.1, 1.0, "0.100 x real time"),
+            (0.6, 5000.0, "1.2e-4 x real time"),
+            (0.0, 5.0, "0.000 x real time"),
+        ] {
+            assert_eq!(pace(simulated, wall), said);
+        }
     }
 }
