@@ -2,9 +2,10 @@
 //!
 //! What is made and checked stands in [`crate::stress`]; here are arguments, progress and files.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -235,6 +236,7 @@ fn campaign(args: &Args) -> Result<(), CliError> {
     let journal = Mutex::new(journal);
     let broken = Mutex::new(None);
     let started = Instant::now();
+    let earlier: BTreeSet<u64> = known.iter().map(|t| t.seed).collect();
     let tried = campaign.run(known, &stop, &|tried| {
         let kept = journal.lock().map(|mut j| j.add(tried));
         if let (Ok(Err(error)), Ok(mut slot)) = (kept, broken.lock()) {
@@ -253,7 +255,14 @@ fn campaign(args: &Args) -> Result<(), CliError> {
     }
     let failed: Vec<&Tried> = tried.iter().filter(|t| !t.failures.is_empty()).collect();
     for one in &failed {
-        keep(args, &campaign, one)?;
+        let path = args.out.join(format!("{}-{}.toml", one.kind, one.seed));
+        // What an earlier call of this command kept stays: making it smaller again may take hours.
+        if !(earlier.contains(&one.seed) && path.exists()) {
+            keep(args, &campaign, one, &path, &stop)?;
+        }
+        if stop.load(Ordering::SeqCst) {
+            break;
+        }
     }
     if stop.load(Ordering::SeqCst) {
         return Err(CliError::Interrupted(format!(
@@ -277,18 +286,29 @@ fn campaign(args: &Args) -> Result<(), CliError> {
     verdict(failed.len(), tried.len())
 }
 
-/// Makes a failed case smaller and writes it.
-fn keep(args: &Args, campaign: &Campaign, tried: &Tried) -> Result<(), CliError> {
-    let path = args.out.join(format!("{}-{}.toml", tried.kind, tried.seed));
+/// Makes a failed case smaller and writes it; nothing of it once `stop` is true, and the next call begins it again.
+fn keep(
+    args: &Args,
+    campaign: &Campaign,
+    tried: &Tried,
+    path: &Path,
+    stop: &AtomicBool,
+) -> Result<(), CliError> {
+    if stop.load(Ordering::SeqCst) {
+        return Ok(());
+    }
     let Ok(case) = campaign.case(tried.seed) else {
         return Ok(());
     };
     let small = if args.shrink > 0 {
         tell!("making {} {} smaller", tried.kind, tried.seed);
-        shrink(&case, &campaign.bounds, args.shrink)
+        shrink(&case, &campaign.bounds, args.shrink, stop)
     } else {
         case
     };
+    if stop.load(Ordering::SeqCst) {
+        return Ok(());
+    }
     let outcome = run_case::run(&small, &campaign.bounds);
     let mut head = vec![format!(
         "Made smaller from `sandgate stress --kind {} --seed {} --count 1`. It failed:",
@@ -299,7 +319,7 @@ fn keep(args: &Args, campaign: &Campaign, tried: &Tried) -> Result<(), CliError>
             head.push(format!("{}: {line}", failure.check.name()));
         }
     }
-    store::write_text(&path, &small.text(&head))?;
+    store::write_text(path, &small.text(&head))?;
     tell!("kept {}", path.display());
     Ok(())
 }
@@ -341,7 +361,9 @@ impl Display {
             self.count - self.done.min(self.count),
         );
         let seconds = self.started.elapsed().as_secs_f64() * left as f64 / done as f64;
-        let eta = HumanDuration(Duration::from_secs_f64(seconds.ceil()));
+        // Of a count like 1e19 it is longer than any clock.
+        let eta = Duration::try_from_secs_f64(seconds.ceil()).unwrap_or(Duration::MAX);
+        let eta = HumanDuration(eta);
         if let Some(failure) = tried.failures.first() {
             self.failed += 1;
             let text = format!(

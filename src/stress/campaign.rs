@@ -86,7 +86,8 @@ impl Campaign {
                 if offset >= self.count {
                     break;
                 }
-                let seed = self.seed + offset;
+                // Seeds go round: every number is one.
+                let seed = self.seed.wrapping_add(offset);
                 if done.contains(&seed) {
                     continue;
                 }

@@ -1,6 +1,8 @@
 //! Looks for a smaller case that fails in the same way: sections and keys dropped, times and bodies halved, as long as it
 //! still fails.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use toml::{Table, Value};
 
 use super::checks::Check;
@@ -166,9 +168,10 @@ fn drop_key(scene: &mut Table, path: &str) {
     }
 }
 
-/// The smallest case found that fails as this one does, in at most so many runs. The case itself if it does not fail.
+/// The smallest case found that fails as this one does, in at most so many runs, or until `stop` becomes true. The case itself
+/// if it does not fail.
 #[must_use]
-pub fn shrink(case: &Case, bounds: &Bounds, most_runs: usize) -> Case {
+pub fn shrink(case: &Case, bounds: &Bounds, most_runs: usize, stop: &AtomicBool) -> Case {
     let Some(wanted) = signature(&run(case, bounds)) else {
         return case.clone();
     };
@@ -179,7 +182,7 @@ pub fn shrink(case: &Case, bounds: &Bounds, most_runs: usize) -> Case {
     let (mut best, mut runs) = (case.clone(), 0);
     'again: loop {
         for candidate in smaller(&best, keep_walls) {
-            if runs >= most_runs {
+            if runs >= most_runs || stop.load(Ordering::SeqCst) {
                 break 'again;
             }
             // What the reader refuses is no smaller case, unless that was the point.
@@ -210,18 +213,20 @@ mod tests {
         let bounds = Bounds::default();
         let before = run(&case, &bounds);
         assert_eq!(before.failure().unwrap().check, Check::Leak);
-        let small = shrink(&case, &bounds, 60);
+        let small = shrink(&case, &bounds, 60, &AtomicBool::new(false));
         let after = run(&small, &bounds);
         assert_eq!(after.failure().unwrap().check, Check::Leak);
         assert!(small.drive.count <= 2, "{}", small.text(&[]));
         assert!(small.text(&[]).len() < case.text(&[]).len());
         let bodies = small.scene["bodies"].as_table().unwrap();
         assert_eq!(bodies.len(), 1);
+        assert_eq!(shrink(&case, &bounds, 60, &AtomicBool::new(true)), case);
     }
 
     #[test]
     fn what_does_not_fail_is_left_alone() {
         let case = generate::of_kind("illegal", 1).unwrap();
-        assert_eq!(shrink(&case, &Bounds::default(), 10), case);
+        let small = shrink(&case, &Bounds::default(), 10, &AtomicBool::new(false));
+        assert_eq!(small, case);
     }
 }
