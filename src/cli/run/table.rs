@@ -99,10 +99,12 @@ impl EarlierRows {
         };
         let cells = line.trim_end().split(',');
         let row: Vec<f64> = cells.map_while(|cell| cell.parse().ok()).collect();
+        // Only the last line may be cut short (by a crash), if within a number it still is a row; it is computed again.
+        if !line.ends_with('\n') {
+            return Ok(None);
+        }
         match row.len() == self.width {
             true => Ok(Some(row)),
-            // Only the last line may be cut short (by a crash); whatever it was is computed again.
-            false if !line.ends_with('\n') => Ok(None),
             false => Err(self.wrong(format!("line {} is not a row of numbers", self.number))),
         }
     }
@@ -192,7 +194,10 @@ mod tests {
             Ok(all)
         };
         assert_eq!(read("time,a\n0.0,1.5\n0.5,2.5\n").unwrap().len(), 2);
-        assert_eq!(read("time,a\n0.0,1.5\n0.5").unwrap(), [[0.0, 1.5]]);
+        for cut in ["0.5", "0.5,2.5"] {
+            let text = format!("time,a\n0.0,1.5\n{cut}");
+            assert_eq!(read(&text).unwrap(), [[0.0, 1.5]], "{cut}");
+        }
         assert!(read("time,b\n").unwrap_err().contains("columns"));
         assert!(read("").unwrap_err().contains("columns"));
         let wrong = read("time,a\n0.0,1.5\n0.5\n1.0,2.0\n").unwrap_err();
