@@ -31,6 +31,8 @@ pub(super) struct Series {
     /// For each column the one that says whether it is a measurement.
     validity: Vec<Option<usize>>,
     file: Patient,
+    /// The same file, to have it on the disk itself.
+    disk: File,
     path: PathBuf,
     flushed: Instant,
     warned: bool,
@@ -54,6 +56,7 @@ impl Series {
         };
         let fresh = path.with_extension("csv.part");
         let file = File::create(&fresh).map_err(|e| cannot_write(&fresh, e))?;
+        let disk = file.try_clone().map_err(|e| cannot_write(&fresh, e))?;
         let mut series = Self {
             span: None,
             gates: gates(component, &references),
@@ -62,6 +65,7 @@ impl Series {
             references,
             columns,
             file: Patient::new(file),
+            disk,
             path: path.to_path_buf(),
             flushed: Instant::now(),
             warned: false,
@@ -115,6 +119,31 @@ impl Series {
     pub(super) fn flush(&mut self) -> Result<(), CliError> {
         self.flushed = Instant::now();
         self.file.flush().map_err(|e| cannot_write(&self.path, e))
+    }
+
+    /// Has everything written so far on the disk itself: a power cut takes nothing of it.
+    ///
+    /// # Errors
+    /// [`CliError::File`].
+    pub(super) fn sync(&mut self) -> Result<(), CliError> {
+        self.flush()?;
+        self.disk
+            .sync_data()
+            .map_err(|e| cannot_write(&self.path, e))
+    }
+
+    /// A warning if the rows of an earlier part end before the state at `from` [s] that the run goes on with.
+    pub(super) fn missing_before(&self, from: f64) -> Option<String> {
+        let ends = match self.span {
+            Some((_, last)) if last >= from => return None,
+            Some((_, last)) => format!("ends at t = {last} s"),
+            None => "has no rows".to_owned(),
+        };
+        Some(format!(
+            "warning: {} {ends}, before the saved state at t = {from} s: rows between are missing there and in what the \
+             summary says of the run; start the run anew if you need them",
+            self.path.display()
+        ))
     }
 
     /// Takes a row off the file's end of which the disk took only a part; this needs no room.
@@ -211,6 +240,12 @@ mod tests {
         // From a checkpoint before the last row.
         let mut second = Series::open(&two, &component, Some(5.0)).unwrap();
         assert_eq!(second.span, Some((0.0, 5.0)));
+        assert_eq!(second.missing_before(5.0), None);
+        let told = second.missing_before(5.5).unwrap();
+        assert!(
+            told.contains("ends at t = 5 s, before the saved state at t = 5.5 s"),
+            "{told}"
+        );
         push(&mut second, 5001..9000);
         let read = |path: &Path| std::fs::read_to_string(path).unwrap();
         assert_eq!(read(&one), read(&two));

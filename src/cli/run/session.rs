@@ -115,6 +115,9 @@ impl Session {
         let from = component.time();
         let keep = folder.earlier.is_some().then_some(from);
         let mut series = Series::open(&folder.file("gauges.csv"), &component, keep)?;
+        if let Some(warning) = keep.and_then(|from| series.missing_before(from)) {
+            tell!("{warning}");
+        }
         let mut log = if plan.log {
             RunLog::start(&folder, &component, resumed)?
         } else {
@@ -214,7 +217,8 @@ impl Session {
                 Err(error @ CliError::File { .. }) => {
                     if !std::mem::replace(&mut self.warned, true) {
                         let text = error.as_warning();
-                        let text = format!("warning: {text}; the run goes on without new checkpoints");
+                        let text =
+                            format!("warning: {text}; the run goes on without new checkpoints");
                         self.progress.tell(&text);
                     }
                     self.plan_checkpoint();
@@ -236,7 +240,7 @@ impl Session {
 
     /// Saves the state; the table is on disk first, so that a resumed run finds its rows.
     pub(super) fn checkpoint(&mut self) -> Result<(), CliError> {
-        self.series.flush()?;
+        self.series.sync()?;
         self.folder.replace(CHECKPOINT, &self.component.save()?)?;
         self.saved = Some(self.component.time());
         self.write_summary("running", None)?;
