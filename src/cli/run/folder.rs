@@ -263,7 +263,11 @@ fn names(folder: &Path) -> Result<Vec<String>, CliError> {
 
 pub(super) fn cannot_make(path: &Path, source: std::io::Error) -> CliError {
     CliError::File {
-        action: "make folder",
+        // The lock is the first file that is written there.
+        action: match path.is_dir() {
+            true => "write to folder",
+            false => "make folder",
+        },
         path: path.to_path_buf(),
         source,
         remedy: "give a folder you may write to with --out",
