@@ -114,7 +114,16 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         Some(log) => log,
         None => &mut nobody,
     };
-    let server = Server::open(component, &options, observer)?;
+    let server = match Server::open(component, &options, observer) {
+        Ok(server) => server,
+        Err(error) => {
+            // Nothing was served that it could tell, and the same command shall find its name free.
+            if let Some(log) = log {
+                log.discard();
+            }
+            return Err(error.into());
+        }
+    };
     announce(&server, &options)?;
     let (component, session) = server.run(observer, &stop);
     let why = match component.mode() {

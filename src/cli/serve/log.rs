@@ -52,6 +52,13 @@ impl Log {
         }))
     }
 
+    /// Removes the file of a component that could not be served.
+    pub(super) fn discard(self) {
+        if let Err(error) = self.recorder.discard() {
+            tell!("warning: the begun log stays: {error}");
+        }
+    }
+
     fn watch(&mut self) {
         if self.failed {
             return;
