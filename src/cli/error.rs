@@ -1,6 +1,6 @@
 //! What can go wrong in the program, and the exit code of each. Messages say what was found and what to do.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::bench;
 #[cfg(feature = "bus")]
@@ -39,6 +39,14 @@ pub enum CliError {
     /// The component refused a call or a step failed.
     #[error("error: {0}")]
     Component(#[from] component::Error),
+    /// The scene of this file could not be built.
+    #[error("error: {}: {source}", path.display())]
+    Build {
+        /// The scene file.
+        path: PathBuf,
+        /// What stands in the way.
+        source: Box<component::Error>,
+    },
     /// The FMU could not be packed.
     #[error("error: {0}")]
     Fmu(#[from] fmi::Error),
@@ -113,6 +121,20 @@ impl CliError {
         text.strip_prefix("error: ").unwrap_or(&text).to_owned()
     }
 
+    /// The same, with the scene's file where it says that the scene cannot be built.
+    pub(super) fn of_scene(self, path: &Path) -> Self {
+        match self {
+            Self::Component(source @ component::Error::Setup(_))
+            | Self::Fmu(fmi::Error::Component(source @ component::Error::Setup(_))) => {
+                Self::Build {
+                    path: path.to_owned(),
+                    source: Box::new(source),
+                }
+            }
+            other => other,
+        }
+    }
+
     /// The exit code, 0 to 255.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
@@ -122,6 +144,7 @@ impl CliError {
             Self::Component(error) | Self::Fmu(fmi::Error::Component(error)) => {
                 error.status().exit_code
             }
+            Self::Build { source, .. } => source.status().exit_code,
             Self::Fmu(fmi::Error::SceneTooLong { .. }) => 3,
             Self::Fmu(_) | Self::Validate(validate::Error::File { .. }) => 5,
             Self::Bench(bench::Error::Scene { .. }) => 1,

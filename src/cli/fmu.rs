@@ -58,7 +58,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         reference: args.reference.map_or(Extent::Short, Extent::Until),
         kind: args.kind(),
     };
-    let packed = pack_with(&scene, &packing, &output)?;
+    let packed = pack_with(&scene, &packing, &output)
+        .map_err(|error| CliError::from(error).of_scene(&args.case))?;
     if let Some(why) = packed.cut_short {
         tell!(
             "warning: reference results end at t = {} s, as the next step of this scene fails on its own: {why}",

@@ -8,7 +8,7 @@ mod scene;
 use std::path::PathBuf;
 
 use super::clock::{cores, peak_memory};
-use super::{CliError, load_scene, say, threads};
+use super::{CliError, component_of, load_scene, say, threads};
 use crate::component::{Causality, Component, Start};
 
 /// What may be typed after `sandgate info`.
@@ -24,10 +24,10 @@ pub(super) struct Args {
 /// Prints the report.
 ///
 /// # Errors
-/// [`CliError::Scene`], [`CliError::Component`] if the scene cannot be built or its first steps fail.
+/// [`CliError::Scene`], [`CliError::Build`], [`CliError::Component`] if its first steps fail.
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let scene = load_scene(&args.case)?;
-    let mut component = Component::new(&scene)?;
+    let mut component = component_of(&scene, &args.case)?;
     component.set_threads(usize::from(args.threads));
     component.initialize(0.0, None)?;
     let mut report = scene::describe(&scene, &component);

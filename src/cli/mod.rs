@@ -38,6 +38,7 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 pub use error::CliError;
 
+use crate::component::Component;
 use crate::scene::Scene;
 
 /// Granular flow (SPH) as a co-simulation component.
@@ -139,6 +140,28 @@ fn load_scene(path: &Path) -> Result<Scene, CliError> {
         remedy: "give the path of a scene file, for example cases/silo_gate.toml",
     })?;
     Ok(crate::scene::load(path)?)
+}
+
+/// The component of a scene that was read from `path`.
+///
+/// # Errors
+/// [`CliError::Build`] if it cannot be built.
+fn component_of(scene: &Scene, path: &Path) -> Result<Component, CliError> {
+    tell_if_large(scene, path);
+    Component::new(scene).map_err(|error| CliError::from(error).of_scene(path))
+}
+
+/// Says how large a scene is that takes a while to build, before it does.
+fn tell_if_large(scene: &Scene, path: &Path) {
+    /// Built in a few seconds.
+    const SOON: f64 = 5e4;
+    let particles = scene.about_particles();
+    if particles > SOON {
+        tell!(
+            "{}: building about {particles:.0} particles, which may take minutes (Ctrl-C ends)",
+            path.display()
+        );
+    }
 }
 
 /// Prints text to standard output. That its reader has gone away (`| head`) is no error and ends nothing: what else the

@@ -7,9 +7,9 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::{CliError, load_scene, quantity, say, stop, threads};
+use super::{CliError, component_of, load_scene, quantity, say, stop, threads};
 use crate::bus::{Advice, Lost, ServeOptions, Server, WhenLost, ZenohConfig};
-use crate::component::{Component, Mode};
+use crate::component::Mode;
 use crate::wire::{Observer, Unobserved};
 use log::Log;
 
@@ -77,7 +77,7 @@ Schedules of the scene are for `sandgate run`: here clients set the inputs.";
 /// Serves until it is ended.
 ///
 /// # Errors
-/// [`CliError::Scene`], [`CliError::Bus`], [`CliError::Log`]; [`CliError::Component`] if the scene cannot be built.
+/// [`CliError::Scene`], [`CliError::Bus`], [`CliError::Log`], [`CliError::Build`].
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let scene = load_scene(&args.case)?;
     let mut options = ServeOptions {
@@ -102,7 +102,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if let Some(name) = &args.instance {
         options.instance.clone_from(name);
     }
-    let mut component = Component::new(&scene)?;
+    let mut component = component_of(&scene, &args.case)?;
     component.set_threads(usize::from(args.threads));
     let stop = stop::on_interrupt("stopping after this step")?;
     let mut log = match &args.log {

@@ -192,6 +192,38 @@ fn scenes_that_are_missing_or_wrong_are_refused() {
 }
 
 #[test]
+fn scenes_that_cannot_be_built_are_refused_with_their_file() {
+    let desk = Desk::new();
+    let mut text = std::fs::read_to_string(scene("stream")).unwrap();
+    text.push_str(
+        "[inflows.feed]\nmaterial = \"water\"\nfrom = [0.15, 0.15]\nto = [0.05, 0.15]\nvelocity = [0, -0.5]\n\
+         [outflows.end]\nlower = [0, 0.12]\nupper = [0.2, 0.16]\n",
+    );
+    std::fs::write(desk.path("full.toml"), text).unwrap();
+    let words = [
+        "error: full.toml: cannot build scene: inflow feed",
+        "inside outflow end",
+    ];
+    for command in ["run", "info"] {
+        desk.refused(&[command, "full.toml"], 3, &words);
+    }
+    assert!(!desk.path("out").exists(), "a refused run left a folder");
+}
+
+#[cfg(feature = "bus")]
+#[test]
+fn a_component_that_cannot_be_served_leaves_no_log() {
+    let (desk, silo) = (Desk::new(), small_silo());
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let endpoint = format!("tcp/{}", taken.local_addr().unwrap());
+    for _ in 0..2 {
+        let args = ["serve", &silo, "--listen", &endpoint, "--log", "day.mcap"];
+        desk.refused(&args, 6, &[&endpoint]);
+        assert!(!desk.path("day.mcap.part").exists());
+    }
+}
+
+#[test]
 fn a_run_leaves_every_file_and_keeps_all_mass() {
     let desk = Desk::new();
     let shown = desk.ok(&["run", &small_silo(), "--threads", "2"]);

@@ -23,7 +23,7 @@ mod table;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::{CliError, load_scene, quantity, stop, threads};
+use super::{CliError, load_scene, quantity, stop, tell_if_large, threads};
 use crate::component::read_saved;
 use session::Session;
 
@@ -89,7 +89,6 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         log: !args.no_log,
     };
     check_times(&plan, args.step.is_some())?;
-    let stop = stop::on_interrupt("stopping after this communication step and saving")?;
     let resume = args.resume.as_deref();
     let continued = match resume.filter(|file| folder::goes_on(file, args.out.as_deref())) {
         Some(file) => Some(folder::Folder::of_checkpoint(file)?),
@@ -117,7 +116,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         None => None,
     };
     let saved = args.resume.as_deref().zip(resumed.as_deref());
-    let component = session::ready(&scene, saved, &plan)?;
+    tell_if_large(&scene, &args.case);
+    let component =
+        session::ready(&scene, saved, &plan).map_err(|error| error.of_scene(&args.case))?;
+    // Until now there was nothing to save: a signal ended the program.
+    let stop = stop::on_interrupt("stopping after this communication step and saving")?;
     let folder = match (continued, &args.out) {
         (Some(folder), _) => folder,
         (None, Some(path)) => folder::Folder::named(path, args.force)?,

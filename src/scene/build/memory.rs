@@ -3,6 +3,8 @@
 
 use crate::boundary::ROWS;
 use crate::math::{dot, norm, sub};
+#[cfg(feature = "cli")]
+use crate::scene::Dimension;
 use crate::scene::{Body, Gate, Point, Scene, WallGeometry};
 use crate::solver::Scheme;
 
@@ -32,6 +34,17 @@ pub(super) fn check_memory<const D: usize>(scene: &Scene) -> Result<(), String> 
             bytes / 1e9
         )
     })
+}
+
+#[cfg(feature = "cli")]
+impl Scene {
+    /// About how many particles its bodies start as, known without making them.
+    pub(crate) fn about_particles(&self) -> f64 {
+        match self.dimension {
+            Dimension::Two | Dimension::Axisymmetric => particles::<2>(self),
+            Dimension::Three => particles::<3>(self),
+        }
+    }
 }
 
 /// Particles of all bodies, but for those that a lattice has more or less at a rim.
@@ -155,6 +168,8 @@ mod tests {
             };
             near(estimates.0, made.0);
             near(estimates.1, made.1);
+            #[cfg(feature = "cli")]
+            near(scene.about_particles(), made.0);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Whether a scene can start: no particle inside a wall or gate.
 
+use super::particles::lattices;
 use super::plates::with_plates;
 use crate::math::{Vector, dot, sub};
 use crate::scene::Scene;
@@ -19,20 +20,37 @@ pub(super) fn check_overlap<const D: usize>(
     state: &State<D>,
 ) -> Result<(), String> {
     let obstacles = Obstacles::new(plan, state);
-    for x in &state.grains.position {
+    for (number, x) in state.grains.position.iter().enumerate() {
+        let a_particle = || format!("a particle of body {} starts", body_of::<D>(scene, number));
         if let Some(group) = obstacles.holds(x, START) {
             return Err(format!(
-                "a particle starts at {:?} m, inside {}{}: move the body or the wall apart",
+                "{} at {:?} m, inside {}{}: move the body or the wall apart",
+                a_particle(),
                 &x[..],
                 name(scene, group),
                 side(scene, group),
             ));
         }
         if dot(x, x).is_nan() {
-            return Err("a particle starts at a position that is not a number".to_owned());
+            return Err(format!(
+                "{} at a position that is not a number",
+                a_particle()
+            ));
         }
     }
     check_inflows(scene, plan, &obstacles)
+}
+
+/// The body that a particle of the start belongs to: they stand in the bodies' order.
+fn body_of<const D: usize>(scene: &Scene, number: usize) -> &str {
+    let mut end = 0;
+    let ends = lattices::<D>(scene).into_iter().map(|lattice| {
+        end += lattice.points.len();
+        end
+    });
+    let mut bodies = scene.bodies.iter().zip(ends);
+    let found = bodies.find(|(_, end)| number < *end);
+    found.map_or("", |(body, _)| &body.name)
 }
 
 /// What comes in has room, and stays in.
