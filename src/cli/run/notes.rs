@@ -86,9 +86,15 @@ fn held(name: &str, whole: f64, stood: f64, (wanted, opening): (f64, f64)) -> Op
     })
 }
 
-/// A gauge that measured at no time, though not for want of material: `flag` is its validity.
+/// A gauge that measured at no time: `flag` is its validity.
 fn silent(name: &str, flag: &Figures) -> Option<String> {
     let outside = f64::from(Validity::Outside.code());
+    if flag.low.0 >= f64::from(Validity::Empty.code()) && flag.low.0 < outside {
+        return Some(format!(
+            "note: gauge.{name} read 0 all the time: no material came to its place (validity 1). If some should have, see where its\n  \
+             line or point lies; docs/gauges.md says what each gauge needs."
+        ));
+    }
     (flag.low.0 >= outside).then(|| {
         let place = match flag.last > outside {
             true => "within a wall or a gate",
@@ -119,6 +125,20 @@ fn sound_speeds(scene: &Scene) -> String {
     all.join("; ")
 }
 
+/// What to do for a larger sound speed: the key that sets it wins over the one that it else follows from.
+fn raise_sound_speed(scene: &Scene) -> &'static str {
+    let text = toml::from_str::<toml::Table>(&scene.source).unwrap_or_default();
+    let numerics = text.get("numerics").and_then(toml::Value::as_table);
+    let gives = |key: &str| numerics.is_some_and(|keys| keys.contains_key(key));
+    if gives("grain_compressibility") {
+        "Lower numerics.grain_compressibility, from which it follows here"
+    } else if gives("sound_speed") {
+        "Raise sound_speed, or delete it and give numerics.expected_speed, the largest speed that you expect"
+    } else {
+        "Give numerics.expected_speed, the largest speed that you expect, or a larger sound_speed"
+    }
+}
+
 /// The sound speed is too low for what flowed.
 fn fast(session: &Session) -> Option<String> {
     let (_, (share, time)) = extremes(session, session.component.variables().share_fast())?;
@@ -127,10 +147,11 @@ fn fast(session: &Session) -> Option<String> {
         format!(
             "note: at t = {time} s {:.0} % of the mass under pressure moved faster than a fifth of the sound speed\n  \
              ({}): so fast it is compressed by its own flow, and thin layers may gain speed.\n  \
-             Give numerics.expected_speed, the largest speed that you expect, or a larger sound_speed; the run takes\n  \
+             {}; the run takes\n  \
              longer in proportion. See validity.share_fast over time, and docs/limits.md.",
             100.0 * share,
             sound_speeds(session.component.scene()),
+            raise_sound_speed(session.component.scene()),
         )
     })
 }
@@ -233,9 +254,31 @@ mod tests {
             "{told}"
         );
         assert!(note(&[2.0; 3]).unwrap().contains("outside of the domain"));
-        // Empty is a measurement, and a gate may cover a place for a while.
-        assert_eq!(note(&[1.0; 3]), None);
+        // A gate may cover a place for a while, and material may come late.
+        for empty in [[1.0; 3], [1.0, 3.0, 1.0]] {
+            let told = note(&empty).unwrap();
+            assert!(told.contains("no material came to its place"), "{told}");
+        }
         assert_eq!(note(&[3.0, 0.0, 3.0]), None);
+        assert_eq!(note(&[1.0, 1.0, 0.0]), None);
+    }
+
+    #[test]
+    fn what_raises_the_sound_speed_is_the_key_that_sets_it() {
+        let stream = include_str!("../../../tests/scenes/stream.toml");
+        for (given, key) in [
+            ("sound_speed = 10", "Raise sound_speed, or delete it"),
+            ("expected_speed = 1", "Give numerics.expected_speed"),
+            (
+                "grain_compressibility = 1e-5",
+                "Lower numerics.grain_compressibility",
+            ),
+        ] {
+            let text = stream.replace("sound_speed = 10", given);
+            let scene = crate::scene::parse("stream", &text).unwrap();
+            let told = raise_sound_speed(&scene);
+            assert!(told.starts_with(key), "{given}: {told}");
+        }
     }
 
     #[test]
