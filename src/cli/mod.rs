@@ -158,7 +158,7 @@ fn tell_if_large(scene: &Scene, path: &Path) {
     let particles = scene.about_particles();
     if particles > SOON {
         tell!(
-            "{}: building about {particles:.0} particles, which may take minutes (Ctrl-C ends)",
+            "{}: building about {particles:.0} particles (Ctrl-C ends)",
             path.display()
         );
     }

@@ -1,5 +1,7 @@
 //! What is legal in a scene and seldom meant, in words for people: `sandgate info` and `sandgate run` tell it.
 
+mod slips;
+
 use crate::boundary::ROWS;
 use crate::scene::{Dimension, Scene, WallGeometry};
 
@@ -9,7 +11,8 @@ const MASS_TOLERANCE: f64 = 0.01;
 /// Remarks on a scene, none for most.
 pub(super) fn remarks(scene: &Scene) -> Vec<String> {
     let all = gates(scene).into_iter().chain(bodies(scene));
-    all.chain(thin_walls(scene)).collect()
+    let all = all.chain(thin_walls(scene));
+    all.chain(slips::slips(scene)).collect()
 }
 
 /// Boxes thinner than a gate may be: what is wet on both sides is felt through them, or finds too little wall.
