@@ -3,12 +3,30 @@
 use super::raw::{self, Problems};
 use crate::units::quote;
 
+/// More than so many are not told, and not looked for.
+const MOST: usize = 100;
+
 /// Every syntax error with its line, column and what stands there, one a place.
 pub(super) fn report_syntax(text: &str, errors: &[toml::de::Error], problems: &mut Problems) {
     let mut repeated = Vec::new();
     let mut told = Vec::new();
+    let unclosed = unclosed(text);
+    if let Some(start) = unclosed {
+        let bracket = &text[start..=start];
+        let column = column(text, start);
+        problems.report(
+            &raw::syntax_place(start),
+            format!("{} at column {column}, which is not closed", quote(bracket)),
+            "TOML",
+            format!("add {} where its value ends", quote(closing(bracket))),
+        );
+    }
     for error in errors {
         let span = error.span().unwrap_or(0..0);
+        if unclosed.is_some_and(|start| span.start >= start) {
+            // What follows is read as a part of that value.
+            continue;
+        }
         let is_double = error.message().contains("duplicate key");
         if is_double && is_repeated(text, span.start, &mut repeated) {
             continue;
@@ -19,9 +37,16 @@ pub(super) fn report_syntax(text: &str, errors: &[toml::de::Error], problems: &m
             continue;
         }
         told.push(start);
+        if told.len() > MOST {
+            break;
+        }
         let found = if is_double {
             let key = text.get(span.clone()).unwrap_or_default();
-            format!("duplicate key {}", quote(key))
+            format!(
+                "duplicate key {}{}",
+                quote(key),
+                first_place(text, span.start)
+            )
         } else if token.is_empty() {
             error.message().to_owned()
         } else {
@@ -64,6 +89,88 @@ fn section_start(text: &str, offset: usize) -> usize {
         return line;
     }
     before.rfind("\n[").map_or(0, |at| at + 1)
+}
+
+/// Where what stands at an offset a second time stands first, for messages: `, first in line 3`; empty where that is not found.
+fn first_place(text: &str, offset: usize) -> String {
+    let section = section_start(text, offset);
+    let line = text[..offset].rfind('\n').map_or(0, |at| at + 1);
+    let up_to = |line: &str, end: char| line.split_once(end).map(|(key, _)| key.trim().to_owned());
+    // A header stands again anywhere, a key in its section.
+    let (from, end) = if line == section && text[line..].starts_with('[') {
+        (0, ']')
+    } else {
+        (section, '=')
+    };
+    let again = up_to(&text[line..], end);
+    let mut at = from;
+    for candidate in text[from..line].split_inclusive('\n') {
+        if again.is_some() && up_to(candidate, end) == again {
+            let number = text[..at].matches('\n').count() + 1;
+            return format!(", first in line {number}");
+        }
+        at += candidate.len();
+    }
+    String::new()
+}
+
+fn closing(bracket: &str) -> &'static str {
+    if bracket == "[" { "]" } else { "}" }
+}
+
+/// Offset of the bracket of a value that is not closed before a line that can only be a next one: a key behind `[`, a section
+/// behind `{`, or the end of the text.
+fn unclosed(text: &str) -> Option<usize> {
+    let mut open: Vec<usize> = Vec::new();
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let start = at;
+        at += line.len();
+        match open.last().map(|last| &text[*last..=*last]) {
+            Some("[") if begins_a_key(line) => return open.first().copied(),
+            Some("{") if begins_a_section(line) => return open.first().copied(),
+            // A header's brackets are no value's.
+            None if line.trim_start().starts_with('[') => continue,
+            _ => {}
+        }
+        for (offset, sign) in outside_of_texts(line) {
+            match sign {
+                '[' | '{' => open.push(start + offset),
+                ']' | '}' => drop(open.pop()),
+                _ => {}
+            }
+        }
+    }
+    open.first().copied()
+}
+
+/// The signs of a line that are in no text and no comment. Texts over several lines are taken for several.
+fn outside_of_texts(line: &str) -> impl Iterator<Item = (usize, char)> {
+    let mut within: Option<char> = None;
+    let mut is_escaped = false;
+    let code = line.char_indices().filter(move |(_, sign)| {
+        let was_within = within;
+        match within {
+            Some('"') if is_escaped => is_escaped = false,
+            Some('"') if *sign == '\\' => is_escaped = true,
+            Some(quote) if *sign == quote => within = None,
+            None if matches!(sign, '"' | '\'' | '#') => within = Some(*sign),
+            _ => {}
+        }
+        was_within.is_none()
+    });
+    code.filter(|(_, sign)| "[]{}".contains(*sign))
+}
+
+fn begins_a_key(line: &str) -> bool {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+    let rest = line.trim_start().trim_start_matches(is_bare);
+    rest.len() < line.trim_start().len() && rest.trim_start().starts_with('=')
+}
+
+fn begins_a_section(line: &str) -> bool {
+    let name = line.trim_start().trim_start_matches('[');
+    line.starts_with('[') && name.starts_with(|c: char| c.is_ascii_alphabetic())
 }
 
 /// What stands at an offset between signs that part values, and where it starts; empty on such a sign.
@@ -145,6 +252,39 @@ mod tests {
             assert_eq!((*line, remedy.as_str()), (at, number), "{found}");
             assert!(found.starts_with(token), "{found}");
         }
+    }
+
+    #[test]
+    fn a_bracket_that_is_not_closed_is_told_once_where_it_opens() {
+        let rest = "b = 2 # ]\n[walls.bed]\npolyline = [[0, 0],\n  [1, 0]]\n";
+        for (text, line, found) in [
+            ("a = [1, \"]\",\n", 1, "\"[\" at column 5"),
+            ("c = 1\na = [[1, 2], [3, 4]\n", 2, "\"[\" at column 5"),
+            ("a = { x = [0, 1],\n\n[c]\n", 1, "\"{\" at column 5"),
+        ] {
+            let told = told(&format!("{text}{rest}"));
+            let [(at, what, _)] = &told[..] else {
+                panic!("{text}: {told:?}");
+            };
+            assert_eq!(*at, line, "{told:?}");
+            assert!(what.starts_with(found), "{told:?}");
+        }
+        // What is wrong before it is told, too, and closed ones are no matter.
+        assert_eq!(told("a = .2\nb = [1,\nc = 3\n").len(), 2);
+        for closed in [rest, "a = [\n  1, # [\n  2,\n]\n", "a = { b = '[' }\n"] {
+            assert_eq!(unclosed(closed), None, "{closed}");
+        }
+    }
+
+    #[test]
+    fn what_stands_twice_is_told_with_where_it_stands_first() {
+        let told = told("a = 1\n[b]\nc = 1\nd = 1\n[e]\nc = 2\n c = 3\n[b] # again\nf = 1\n");
+        let found: Vec<_> = told.iter().map(|t| (t.0, t.1.as_str())).collect();
+        let expected = [
+            (7, "duplicate key \"c\", first in line 6"),
+            (8, "duplicate key \"b\", first in line 2"),
+        ];
+        assert_eq!(found, expected);
     }
 
     #[test]
