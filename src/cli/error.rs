@@ -60,16 +60,16 @@ pub enum CliError {
     #[error("error: {0}")]
     Log(#[from] RecordError),
     /// A log cannot be read.
-    #[error("error: {0}")]
+    #[error("error: {0}{remedy}", remedy = where_logs_are(.0))]
     Read(#[from] ReadError),
     /// A log cannot be recovered.
     #[error("error: {0}")]
     Recover(#[from] RecoverError),
     /// A log cannot be run again.
-    #[error("error: {0}")]
+    #[error("error: {0}{remedy}", remedy = where_logs_are(.0))]
     Redrive(#[from] RedriveError),
     /// The scalars of a log cannot be read.
-    #[error("error: {0}")]
+    #[error("error: {0}{remedy}", remedy = where_logs_are(.0))]
     Table(#[from] TableError),
     /// A page cannot be made of a log.
     #[error("error: {0}")]
@@ -112,6 +112,19 @@ pub enum CliError {
     /// Nobody reads our output any more: not an error.
     #[error("the reader of the output has gone")]
     ReaderGone,
+}
+
+/// What to do about a log that is not there; nothing if it is.
+fn where_logs_are(error: &(dyn std::error::Error + 'static)) -> &'static str {
+    let mut causes = std::iter::successors(Some(error), |error| error.source());
+    let is_missing = |error: &(dyn std::error::Error + 'static)| {
+        let system = error.downcast_ref::<std::io::Error>();
+        system.is_some_and(|error| error.kind() == std::io::ErrorKind::NotFound)
+    };
+    match causes.any(is_missing) {
+        true => "; give the path of a log, for example out/silo_gate/run.mcap",
+        false => "",
+    }
 }
 
 impl CliError {

@@ -158,6 +158,10 @@ fn wrong_use_is_refused_with_code_2() {
     desk.refused(&["run", &silo, "--threads", "-1"], 2, &["-1", "0..=256"]);
     desk.refused(&["log", "cat", "no.mcap", "--from", "-2m"], 2, &["-2m"]);
     desk.refused(&["run", &silo, "--force"], 2, &["--out"]);
+    for verb in ["info", "redrive"] {
+        let words = ["cannot read log no.mcap", "out/silo_gate/run.mcap"];
+        desk.refused(&["log", verb, "no.mcap"], 5, &words);
+    }
     desk.refused(&["fmu", &silo, "--fmi", "1"], 2, &["2..=3"]);
     let words = ["whose folder does not exist", "make nowhere first"];
     desk.refused(&["fmu", &silo, "--output", "nowhere/silo.fmu"], 2, &words);
