@@ -83,9 +83,18 @@ pub fn load(path: &Path) -> Result<Scene, SceneErrors> {
     match read.map(|_| String::from_utf8(bytes)) {
         Ok(Ok(text)) => parse(&file, &text),
         Ok(Err(error)) => {
-            let at = error.utf8_error().valid_up_to();
-            let found = format!("a byte at offset {at} that is not UTF-8");
-            refuse(found, "UTF-8 text", "save the file as UTF-8")
+            let text =
+                String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
+            let mut problems = Problems::new(&file, &text);
+            let column = text.lines().last().filter(|_| !text.ends_with('\n'));
+            let column = column.map_or(0, |line| line.chars().count()) + 1;
+            problems.report(
+                &raw::syntax_place(text.len()),
+                format!("a byte at column {column} that is not UTF-8"),
+                "UTF-8 text",
+                "save the file as UTF-8",
+            );
+            Err(SceneErrors::new(problems.into_vec()))
         }
         Err(error) => refuse(
             error.to_string(),

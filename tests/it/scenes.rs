@@ -324,6 +324,12 @@ fn files_that_are_no_text_are_refused_with_a_remedy() {
         assert!(message.contains(part), "{name}: {message}");
     };
     check("latin.toml", b"name = \"\xe4\"\n", "not UTF-8");
+    let latin = b"name = \"a\"\ntitle = \"\xe4\"\n";
+    check(
+        "latin.toml",
+        latin,
+        "latin.toml:2\n  found:   a byte at column 10",
+    );
     check("empty.toml", b"", "add [domain] with lower, upper");
     check("zeros.toml", &[0; 64], "TOML");
     check("image.toml", b"\x89PNG\r\n\x1a\n", "not UTF-8");

@@ -2,6 +2,7 @@
 
 use super::Lift;
 use super::faces::example_of_span;
+use super::full_names::full_names;
 use crate::math::{dot, length, sub};
 use crate::scene::raw::{
     At, Coordinates, Entry, Length, Place, Ratio, RawFront, RawGauge, RawProfile,
@@ -262,12 +263,10 @@ impl Lift<'_> {
                 .index_of(name, place, "gates", raw.gates.as_ref())
                 .map(ForceTarget::Gate),
             _ => {
-                self.problems.report(
-                    place,
-                    format!("text {}", crate::units::quote(text)),
-                    "\"wall.NAME\" or \"gate.NAME\"",
-                    "write for example \"wall.floor\"",
-                );
+                let mut known = full_names("wall", raw.walls.as_ref(), "");
+                known.extend(full_names("gate", raw.gates.as_ref(), ""));
+                let (allowed, example) = ("\"wall.NAME\" or \"gate.NAME\"", "wall.floor");
+                self.report_full_name(place, text, (allowed, example), &known);
                 None
             }
         }

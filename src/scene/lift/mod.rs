@@ -11,6 +11,7 @@ mod devices;
 mod domain;
 mod faces;
 mod friction;
+mod full_names;
 mod gates;
 mod gauges;
 mod geometry;

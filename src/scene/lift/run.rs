@@ -2,6 +2,7 @@
 
 use super::Lift;
 use super::devices::up_to;
+use super::full_names::full_names;
 use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint, SyncWord};
 use crate::scene::types::{Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule};
 use crate::solver::Numerics;
@@ -235,12 +236,11 @@ impl Lift<'_> {
                 Some((InputTarget::InflowRate(index), name))
             }
             _ => {
-                self.problems.report(
-                    &at.place,
-                    format!("text {}", quote(&at.value.0)),
-                    "\"gate.NAME.opening\" or \"inflow.NAME.rate\"",
-                    "write for example \"gate.main.opening\"",
-                );
+                let mut known = full_names("gate", raw.gates.as_ref(), ".opening");
+                known.extend(full_names("inflow", raw.inflows.as_ref(), ".rate"));
+                let allowed = "\"gate.NAME.opening\" or \"inflow.NAME.rate\"";
+                let ways = (allowed, "gate.main.opening");
+                self.report_full_name(&at.place, &at.value.0, ways, &known);
                 None
             }
         }

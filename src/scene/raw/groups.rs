@@ -10,7 +10,7 @@ use super::read::{At, Field, Node, describe};
 use super::values::{
     Acceleration, Loose, Scalar, Time, check_name, name_pattern, quantity_schema, schemas,
 };
-use crate::units::Quantity;
+use crate::units::{Quantity, quote};
 
 /// A point or vector of two or three values.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,7 +111,7 @@ impl<T: Field> Field for List<T> {
                 node.place(),
                 describe(node.value()),
                 format!("an array of at most {LONGEST_LIST} values"),
-                "write it as [value, value, ...]",
+                Self::remedy_of(node),
             );
             return None;
         };
@@ -123,6 +123,21 @@ impl<T: Field> Field for List<T> {
             })
             .collect();
         (read.len() == elements.len()).then_some(Self(read))
+    }
+}
+
+impl<T: Field> List<T> {
+    /// How to write what stands there as a list.
+    fn remedy_of(node: &Node) -> String {
+        // Of what is written in quotes one is a list without its brackets.
+        let is_word = T::example().starts_with('"');
+        match node.value().as_str().filter(|_| is_word) {
+            Some(word) => format!("put it in brackets: [{}]", quote(word)),
+            None if node.value().is_table() && T::example().is_empty() => {
+                format!("write it in double brackets: [[{}]]", node.place().key)
+            }
+            None => "write it as [value, value, ...]".to_owned(),
+        }
     }
 }
 
@@ -174,8 +189,36 @@ pub(in crate::scene) struct Entry<T> {
 /// Most named sections of a kind: phases are counted in bytes.
 const MOST_SECTIONS: usize = 250;
 
+impl<T> Named<T> {
+    /// Reports a section of this kind without a name of its own: `[bodies]` or `[[bodies]]` for `[bodies.NAME]`.
+    fn are_named(node: &Node, problems: &mut Problems) -> bool {
+        let kind = &node.place().key;
+        let entries = node.value().as_table().into_iter().flatten();
+        // `[[bodies.fill]]` has a name: it is told where the section is read.
+        let bare = entries
+            .map(|(key, value)| (key, Node::new(value.get_ref(), Place::default())))
+            .filter(|(_, node)| !node.value().is_table() && !node.is_list_of_tables());
+        let first = bare.map(|(key, _)| key).min_by_key(|key| key.span().start);
+        let found = match first {
+            Some(key) => format!("[{kind}] with the key {}", quote(key.get_ref())),
+            None if node.is_list_of_tables() => format!("[[{kind}]]"),
+            None => return true,
+        };
+        problems.report(
+            node.place(),
+            found,
+            format!("sections with names of their own: [{kind}.NAME]"),
+            format!("name it, for example [{kind}.main]"),
+        );
+        false
+    }
+}
+
 impl<T: Field> Field for Named<T> {
     fn read(node: &Node, problems: &mut Problems) -> Option<Self> {
+        if !Self::are_named(node, problems) {
+            return None;
+        }
         let sections = node.entries(problems)?;
         if sections.len() > MOST_SECTIONS {
             problems.report(

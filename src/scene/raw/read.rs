@@ -71,15 +71,20 @@ impl<'a> Node<'a> {
         Some(array.iter().enumerate().map(element).collect())
     }
 
+    /// Whether it is what double brackets make.
+    pub(super) fn is_list_of_tables(&self) -> bool {
+        let array = self.value.as_array();
+        array.is_some_and(|all| !all.is_empty() && all.iter().all(|v| v.get_ref().is_table()))
+    }
+
     /// Its entries in the order of the file, if it is a table; reports it otherwise.
     pub(super) fn entries(&self, problems: &mut Problems) -> Option<Vec<(&'a str, Node<'a>)>> {
         let Some(table) = self.value.as_table() else {
-            problems.report(
-                &self.place,
-                describe(self.value),
-                "a table",
-                "write it as a [section] or as { key = value }",
-            );
+            let remedy = match self.is_list_of_tables() {
+                true => format!("write it in single brackets: [{}]", self.place.key),
+                false => "write it as a [section] or as { key = value }".to_owned(),
+            };
+            problems.report(&self.place, describe(self.value), "a table", remedy);
             return None;
         };
         Some(entries_of(table, &self.place))
