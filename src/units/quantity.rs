@@ -58,6 +58,7 @@ const TIME: &[Unit] = &[
     unit("ms", 1.0, 1e3),
     unit("us", 1.0, 1e6),
     unit("min", 60.0, 1.0),
+    unit("h", 3600.0, 1.0),
 ];
 const ANGLE: &[Unit] = &[
     unit("rad", 1.0, 1.0),
@@ -86,13 +87,17 @@ const DENSITY: &[Unit] = &[
     unit("kg/m^3", 1.0, 1.0),
     unit("kg/m3", 1.0, 1.0),
     unit("g/cm^3", 1e3, 1.0),
+    unit("g/cm3", 1e3, 1.0),
     unit("t/m^3", 1e3, 1.0),
+    unit("t/m3", 1e3, 1.0),
 ];
 const PRESSURE: &[Unit] = &[
     unit("Pa", 1.0, 1.0),
     unit("kPa", 1e3, 1.0),
     unit("MPa", 1e6, 1.0),
     unit("bar", 1e5, 1.0),
+    unit("kN/m^2", 1e3, 1.0),
+    unit("kN/m2", 1e3, 1.0),
 ];
 const COMPRESSIBILITY: &[Unit] = &[
     unit("Pa^-1", 1.0, 1.0),
