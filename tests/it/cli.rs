@@ -478,6 +478,8 @@ fn info_tells_what_a_case_holds_costs_and_leaves_out() {
         "wall     left: chain of 3 points, no slip",
         "gate     main",
         "outflow  drain",
+        "sound      c0 = 7.92",
+        "H = 0.064 m high",
         "gauge    surface: depth at 4 places",
         "sleep      once nothing has moved for a while, until an input changes",
         "left out   the third dimension",
@@ -496,6 +498,21 @@ fn info_tells_what_a_case_holds_costs_and_leaves_out() {
 }
 
 /// Particles that jitter put beyond a round or slanted rim belong to their body, too.
+#[test]
+fn a_scene_without_title_is_shown_by_its_name() {
+    let desk = Desk::new();
+    let text = std::fs::read_to_string(scene("stream")).unwrap();
+    let text = text.replace("title = \"A stream over a belt without friction\"\n", "");
+    assert!(!text.contains("title"));
+    std::fs::write(desk.path("stream.toml"), text).unwrap();
+    assert!(desk.ok(&["info", "stream.toml"]).starts_with("stream\n"));
+    desk.ok(&["run", "stream.toml", "--out", "run"]);
+    let log = desk.ok(&["log", "info", "run/run.mcap"]);
+    assert!(log.contains(" stream (sha256 "), "{log}");
+    let picture = std::fs::read_to_string(desk.path("run/gauges.svg")).unwrap();
+    assert!(picture.contains("stream"), "{picture}");
+}
+
 #[test]
 fn info_counts_the_particles_of_a_body_as_they_were_made() {
     let desk = Desk::new();

@@ -4,12 +4,16 @@ use crate::cli::remarks::remarks;
 use crate::cli::run::short;
 use crate::component::{Component, StaysAwake};
 use crate::material::{Grains, Law, Material, MuI};
+use crate::math::norm;
 use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
 use crate::solver::Scheme;
 
 /// Particles, walls, devices, gauges and what is not used.
 pub(super) fn describe(scene: &Scene, component: &Component) -> String {
-    let mut text = format!("{}: {}\n", scene.name, scene.title);
+    let mut text = match scene.title.trim() {
+        "" => format!("{}\n", scene.name),
+        title => format!("{}: {title}\n", scene.name),
+    };
     let width = match scene.dimension {
         Dimension::Two => format!("planar, {} m wide", scene.domain.width),
         Dimension::Axisymmetric => "rings about the axis x = 0".to_owned(),
@@ -23,6 +27,7 @@ pub(super) fn describe(scene: &Scene, component: &Component) -> String {
         component.wall_points().len(),
     ));
     text.push_str(&format!("quality    {}\n", quality(scene)));
+    text.push_str(&format!("sound      {}\n", sound(scene)));
     for (body, count) in scene.bodies.iter().zip(scene.body_particles()) {
         text.push_str(&format!(
             "  body     {}: {count} particles of {}\n",
@@ -63,6 +68,21 @@ fn quality(scene: &Scene) -> String {
         },
         n.courant,
         n.solver_tolerance,
+    )
+}
+
+/// The sound speed, and the height of material and the speed of which it is ten times as much.
+fn sound(scene: &Scene) -> String {
+    let c0 = scene.numerics.sound_speed;
+    let g = norm(&scene.domain.gravity);
+    let height = match g > 0.0 {
+        true => format!("for material H = {} m high, ", short(c0 * c0 / (100.0 * g))),
+        false => String::new(),
+    };
+    format!(
+        "c0 = {} m/s: {height}for speeds up to {} m/s (c0 = 10 sqrt(g H), 10 v)",
+        short(c0),
+        short(0.1 * c0)
     )
 }
 

@@ -66,7 +66,11 @@ fn as_text(survey: &Survey) -> String {
     if !run.is_empty() {
         line("run", run_line(&run));
         let hash = get(&run, "scene_hash");
-        line("scene", format!("{} (sha256 {hash})", get(&run, "title")));
+        let title = match get(&run, "title") {
+            blank if blank.trim().is_empty() => get(&run, "scene"),
+            title => title,
+        };
+        line("scene", format!("{title} (sha256 {hash})"));
         let changed = of("end").remove("parameters");
         if let Some(changed) = changed.or_else(|| run.get("parameters").cloned()) {
             line("parameters", format!("not the scene's: {changed}"));

@@ -52,7 +52,11 @@ impl Session {
         }
         let before_failure = self.last_checkpoint(&mut outcome);
         self.series.end_with_whole_row();
-        let title = &self.component.scene().title;
+        let scene = self.component.scene();
+        let title = match scene.title.trim() {
+            "" => &scene.name,
+            title => title,
+        };
         match plot::svg(title, &self.series) {
             Ok(svg) => outcome.fails_by(self.folder.replace("gauges.svg", svg.as_bytes())),
             Err(error) => tell!("warning: gauges.svg could not be drawn: {error}"),

@@ -11,9 +11,9 @@ table! {
         optional quality: QualityWord, default "standard";
         /// Smoothing length over particle spacing.
         optional smoothing_ratio: Ratio, in Range::within(1.2, 2.5), default 1.6;
-        /// Artificial sound speed c0; not below sqrt(g H), H the greatest height of material, or expected_speed; if left out, 10 times the larger of both. For pressures beyond rho g H, as under a piston or of a viscous fluid in a gap, give more: up to 0.005 rho c0^2 they are right to about a percent.
+        /// Artificial sound speed c0; not below sqrt(g H), H the greatest height of material, or expected_speed; if left out, 10 times the larger of both. Given, it is taken as it is, and expected_speed only checks it. For pressures beyond rho g H, as under a piston or of a viscous fluid in a gap, give more: up to 0.005 rho c0^2 they are right to about a percent.
         optional sound_speed: Speed, in Range::above(0.0);
-        /// Largest speed that the flow is expected to reach; raises the sound speed. Give it when material moves faster than sqrt(g H).
+        /// Largest speed that the flow is expected to reach; raises the sound speed, unless sound_speed or grain_compressibility gives that. Give it when material moves faster than sqrt(g H).
         optional expected_speed: Speed, in Range::from(0.0), default 0;
         /// Compressibility K_t of the grains, instead of sound_speed: c0 = 1/sqrt(K_t rho_s phi_max), rho_s the grains' density.
         optional grain_compressibility: Compressibility, in Range::above(0.0);
