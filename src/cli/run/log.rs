@@ -88,7 +88,7 @@ impl RunLog {
         }
     }
 
-    /// A step was done from `t` over `h` [s].
+    /// A step was done from `t` over `h` [s]. A warning that the log goes no further comes back once.
     ///
     /// # Errors
     /// As [`RunLog::initialized`].
@@ -98,9 +98,9 @@ impl RunLog {
         report: &StepReport,
         t: f64,
         h: f64,
-    ) -> Result<(), CliError> {
+    ) -> Result<Option<String>, CliError> {
         let Some(recorder) = &mut self.recorder else {
-            return Ok(());
+            return Ok(None);
         };
         let recorded = recorder.record_step(component, report, t, h, SOURCE);
         if self.failure.is_none() {
@@ -109,9 +109,11 @@ impl RunLog {
         recorded?;
         if let (false, Some(failure)) = (self.warned, &self.failure) {
             self.warned = true;
-            tell!("warning: {failure}; the run goes on without its log");
+            return Ok(Some(format!(
+                "warning: {failure}; the run goes on without its log"
+            )));
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Ends the segment: "finished", "interrupted" or "failed" with the error.

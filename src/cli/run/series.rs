@@ -94,11 +94,11 @@ impl Series {
     }
 
     /// Adds a row with the component's values now. Rows that cannot be written (the disk is full) wait in memory and are
-    /// tried again every second; that is told once.
+    /// tried again every second; a warning of that comes back once.
     ///
     /// # Errors
     /// [`CliError::Component`] if values cannot be read.
-    pub(super) fn sample(&mut self, component: &Component) -> Result<(), CliError> {
+    pub(super) fn sample(&mut self, component: &Component) -> Result<Option<String>, CliError> {
         let mut values = vec![0.0; self.references.len()];
         component.get(&self.references, &mut values)?;
         self.push(component.time(), &values);
@@ -107,9 +107,11 @@ impl Series {
             && !std::mem::replace(&mut self.warned, true)
         {
             let text = error.as_warning();
-            tell!("warning: {text}; the run goes on and tries again every second");
+            return Ok(Some(format!(
+                "warning: {text}; the run goes on and tries again every second"
+            )));
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Hands everything written so far to the system.

@@ -127,8 +127,10 @@ impl Session {
             component.initialize(0.0, None)?;
             log.initialized(&component, 0.0)?;
         }
-        if series.span.is_none_or(|(_, last)| last != from) {
-            series.sample(&component)?;
+        if series.span.is_none_or(|(_, last)| last != from)
+            && let Some(warning) = series.sample(&component)?
+        {
+            tell!("{warning}");
         }
         let mut session = Self {
             progress: Progress::start(&component.scene().name, from, plan.until),
@@ -208,8 +210,11 @@ impl Session {
                 Wish::GoOn
             })?;
         self.count(&report);
-        self.log.step(&self.component, &report, time, next - time)?;
-        self.series.sample(&self.component)?;
+        let of_log = self.log.step(&self.component, &report, time, next - time)?;
+        let of_table = self.series.sample(&self.component)?;
+        for warning in of_log.into_iter().chain(of_table) {
+            self.progress.tell(&warning);
+        }
         self.progress.show(&self.component);
         if self.component.time() >= self.next_checkpoint {
             match self.checkpoint() {
