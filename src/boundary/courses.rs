@@ -16,9 +16,12 @@ const ON_LATTICE: f64 = 1e-6;
 /// about `spacing`; before the first face and behind the last one `spacing` long, from it. Without faces they are those of the lattice
 /// through 0, from `from` on.
 pub(super) fn of_plane(faces: &[f64], (from, to): (f64, f64), spacing: f64) -> Vec<(f64, f64)> {
+    // One beyond, as a plane outside of the domain, meets no point.
+    let within = |x: &f64| (from..=to).contains(x);
+    let faces: Vec<f64> = faces.iter().copied().filter(within).collect();
     // Where all faces are on the lattice it is theirs.
     let faces = if faces.iter().any(|x| is_off(x / spacing)) {
-        apart(faces.to_vec(), spacing)
+        apart(faces, spacing)
     } else {
         Vec::new()
     };
@@ -122,6 +125,13 @@ mod tests {
             of_plane(&[0.25, 0.25], (0.0, 1.0), 0.1),
             of_plane(&[0.25], (0.0, 1.0), 0.1)
         );
+    }
+
+    #[test]
+    fn faces_that_are_far_away_make_no_points() {
+        let near = of_plane(&[0.25], (0.0, 1.0), 0.1);
+        assert_eq!(of_plane(&[1e12, 0.25, -1e12], (0.0, 1.0), 0.1), near);
+        assert!(near.len() < 20);
     }
 
     #[test]
