@@ -42,7 +42,7 @@ const FEET: f64 = 0.02;
 
 /// Rows over the height, and the end [s].
 fn plan(effort: Effort) -> (u32, f64) {
-    effort.pick((20, 640.0), (10, 4.0))
+    effort.pick((20, 2560.0), (10, 4.0))
 }
 
 /// When fronts are looked at: an eighth of the way, a fourth, half and the end [s].
