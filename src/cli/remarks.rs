@@ -10,7 +10,8 @@ const MASS_TOLERANCE: f64 = 0.01;
 
 /// Remarks on a scene, none for most.
 pub(super) fn remarks(scene: &Scene) -> Vec<String> {
-    let all = gates(scene).into_iter().chain(bodies(scene));
+    let all = gates(scene).into_iter().chain(gaps(scene));
+    let all = all.chain(bodies(scene));
     let all = all.chain(thin_walls(scene));
     all.chain(slips::slips(scene)).collect()
 }
@@ -84,6 +85,24 @@ fn gates(scene: &Scene) -> Vec<String> {
             ))
         })
         .collect()
+}
+
+/// Gates that leave a slot open beside a wall when they are shut.
+fn gaps(scene: &Scene) -> Vec<String> {
+    let gaps = scene.gates.iter().flat_map(|gate| {
+        let gaps = scene.gaps_of(gate).into_iter();
+        gaps.map(|gap| {
+            format!(
+                "note: gate {}: between {} and wall {} {} stay open while it is shut. Put that edge on the wall's surface, unless a slot is\n  \
+                 meant.",
+                gate.name,
+                gap.edge,
+                scene.walls[gap.wall].name,
+                length(gap.width),
+            )
+        })
+    });
+    gaps.collect()
 }
 
 fn length(metres: f64) -> String {
@@ -198,6 +217,16 @@ mod tests {
         for told in [with("", &part(0.04)), with("periodic = [\"x\"]", floor)] {
             assert_eq!(told, Vec::<String>::new());
         }
+    }
+
+    #[test]
+    fn a_gate_that_leaves_a_slot_above_the_bed_is_told() {
+        let told = remarks(&sluice("[0.15, 0.02]"));
+        let [note] = &told[..] else {
+            panic!("{told:?}");
+        };
+        let part = "gate sluice: between from and wall bed 0.02 m stay open";
+        assert!(note.contains(part), "{note}");
     }
 
     #[test]

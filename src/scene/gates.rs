@@ -1,4 +1,5 @@
-//! What of a gate's opening lies behind a wall. No rule: a plate may be sealed into the wall that it stands on.
+//! How a gate stands to the walls: what of its opening lies behind one, and what it leaves open while it is shut. No rules: a plate
+//! may be sealed into the wall that it stands on, and a slot may be meant.
 
 use super::{Gate, Point, Scene, WallGeometry};
 
@@ -12,6 +13,20 @@ pub struct BehindWall {
     /// Its share of the opening [1].
     pub share: f64,
 }
+
+/// A way past an edge of a gate that stays open while it is shut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Which edge of the gate's face, as the scene file calls it.
+    pub edge: &'static str,
+    /// Index into [`Scene::walls`].
+    pub wall: usize,
+    /// Its width [m].
+    pub width: f64,
+}
+
+/// Widths of gaps that are told [spacing]: a narrower one lets nothing through, a wider one is seen in any picture of the scene.
+const GAPS: (f64, f64) = (0.5, 4.0);
 
 impl Scene {
     /// The longest part of a gate's opening next to `from`, more than a spacing, that lies behind a wall: what the gate
@@ -33,6 +48,59 @@ impl Scene {
             })
         });
         parts.max_by(|a, b| a.length.total_cmp(&b.length))
+    }
+
+    /// Gaps of half to four spacings between the edges of a shut gate and the walls that it points to. Looked at from the middle of
+    /// each edge; walls that move as a whole are left out.
+    #[must_use]
+    pub fn gaps_of(&self, gate: &Gate) -> Vec<Gap> {
+        let middle = |along: f64, across: f64| -> Point {
+            std::array::from_fn(|k| {
+                gate.from[k] + along * (gate.to[k] - gate.from[k]) + across * gate.span[k]
+            })
+        };
+        let edges = [
+            ("from", middle(0.0, 0.5), middle(1.0, 0.5)),
+            ("to", middle(1.0, 0.5), middle(0.0, 0.5)),
+            ("the end of span", middle(0.5, 1.0), middle(0.5, 0.0)),
+            ("the start of span", middle(0.5, 0.0), middle(0.5, 1.0)),
+        ];
+        let gaps = edges.into_iter().filter_map(|(edge, end, other)| {
+            let (wall, width) = self.gap_beyond(&end, &other)?;
+            Some(Gap { edge, wall, width })
+        });
+        gaps.collect()
+    }
+
+    /// The wall that a way out of a gate's edge, away from the opposite one, comes to first, and the width of the gap before it [m].
+    fn gap_beyond(&self, end: &Point, other: &Point) -> Option<(usize, f64)> {
+        let out: Point = std::array::from_fn(|k| end[k] - other[k]);
+        let size = out.iter().map(|c| c * c).sum::<f64>().sqrt();
+        if size == 0.0 {
+            return None;
+        }
+        let (least, most) = (
+            GAPS.0 * self.numerics.spacing,
+            GAPS.1 * self.numerics.spacing,
+        );
+        let way = out.map(|c| c / size * most);
+        let back = way.map(|c| -c);
+        let far: Point = std::array::from_fn(|k| end[k] + way[k]);
+        let mut nearest: Option<(usize, f64)> = None;
+        let fixed = self.walls.iter().enumerate().filter(|(_, w)| !w.rigid);
+        for (n, wall) in fixed {
+            // What is behind a wall has no gap to it. The way comes to a wall where the way back leaves it.
+            if leaves(&wall.geometry, end, &back).is_some() {
+                return None;
+            }
+            if let Some(share) = leaves(&wall.geometry, &far, &back) {
+                let width = (1.0 - share) * most;
+                if nearest.is_none_or(|(_, least)| width < least) {
+                    nearest = Some((n, width));
+                }
+            }
+        }
+        nearest.filter(|(_, width)| *width > least)
     }
 }
 
@@ -138,6 +206,50 @@ mod tests {
         assert!(
             (length - 0.4).abs() < 1e-12 && share == 1.0,
             "{length} {share}"
+        );
+    }
+
+    fn gaps(dimension: u8, wall: &str, gate: &str) -> Vec<(&'static str, f64)> {
+        let scene = tank(dimension, wall, gate);
+        let gaps = scene.gaps_of(&scene.gates[0]);
+        gaps.iter().map(|gap| (gap.edge, gap.width)).collect()
+    }
+
+    #[test]
+    fn gaps_beside_a_shut_gate_are_found_for_each_kind_of_wall() {
+        for wall in [
+            BED,
+            "plane = { point = [0, 0], normal = [0, 1] }",
+            "box = { lower = [0, -0.5], upper = [2, 0] }",
+        ] {
+            for (gate, edge) in [
+                ("from = [1.5, 0.03]\nto = [1.5, 0.4]", "from"),
+                ("from = [1.5, 0.4]\nto = [1.5, 0.03]", "to"),
+            ] {
+                let found = gaps(2, wall, gate);
+                let [(name, width)] = found[..] else {
+                    panic!("{wall}: {found:?}");
+                };
+                assert!(
+                    name == edge && (width - 0.03).abs() < 1e-12,
+                    "{wall}: {name} {width}"
+                );
+            }
+            for gate in [
+                "from = [1.5, 0]\nto = [1.5, 0.4]",
+                "from = [1.5, 0.009]\nto = [1.5, 0.4]",
+                "from = [1.5, 0.1]\nto = [1.5, 0.4]",
+                "from = [1.5, -0.03]\nto = [1.5, 0.4]",
+            ] {
+                assert_eq!(gaps(2, wall, gate), [], "{wall}: {gate}");
+            }
+        }
+        let side = "plane = { point = [0, 0, 0.2], normal = [0, 0, -1] }";
+        let gate = "from = [1.5, 0, 0]\nto = [1.5, 0.4, 0]\nspan = [0, 0, 0.16]\nthickness = 0.08";
+        let found = gaps(3, side, gate);
+        assert!(
+            matches!(found[..], [("the end of span", width)] if (width - 0.04).abs() < 1e-12),
+            "{found:?}"
         );
     }
 

@@ -29,7 +29,7 @@ pub use adjust::Adjustable;
 pub(crate) use build::rigid_motion;
 pub use build::{BodyMass, build, geometry, narrow};
 pub use error::{SceneError, SceneErrors};
-pub use gates::BehindWall;
+pub use gates::{BehindWall, Gap};
 pub(crate) use lift::MOST_PARTICLES;
 pub use quality::Quality;
 pub use reference::{reference_markdown, schema};
