@@ -30,6 +30,14 @@ pub enum RecordError {
         /// Why.
         source: std::io::Error,
     },
+    /// A log that nothing happened in cannot be taken away.
+    #[error("cannot remove {path}: {source}; delete it by hand")]
+    Remove {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// A write failed, and the run said that its log is required.
     #[error(
         "{0}; the scene requires its log, so the run stops (log.required = false lets it go on)"

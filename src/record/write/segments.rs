@@ -186,13 +186,13 @@ impl Recorder {
     /// Removes the file: nothing happened that it could tell.
     ///
     /// # Errors
-    /// [`RecordError::Create`] with what the system said.
+    /// [`RecordError::Remove`] with what the system said.
     pub fn discard(mut self) -> Result<(), RecordError> {
         self.file.give_up("discarded");
         match &self.place {
             Some(place) => {
                 let path = place.part();
-                std::fs::remove_file(&path).map_err(|source| RecordError::Create { path, source })
+                std::fs::remove_file(&path).map_err(|source| RecordError::Remove { path, source })
             }
             None => Ok(()),
         }
