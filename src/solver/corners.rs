@@ -14,6 +14,8 @@
 
 use crate::math::{Vector, dot, norm, scale, sub};
 
+use super::mirror::FLAT;
+
 /// Largest |n_A.n_B| of faces that make a corner [1]: beyond it they go on from each other.
 pub(crate) const PARALLEL: f64 = 0.9;
 
@@ -82,8 +84,19 @@ struct Face<const D: usize> {
 }
 
 impl<const D: usize> Face<D> {
+    /// Sides of one line differ in their last bits.
     fn has(&self, push: &Push<D>) -> bool {
-        self.group == push.group && self.normal == push.normal
+        self.group == push.group && dot(&self.normal, &push.normal) > 1.0 - FLAT
+    }
+
+    /// Whether the face goes on at the point without a corner.
+    fn goes_on_at(&self, push: &Push<D>) -> bool {
+        self.group == push.group && dot(&self.normal, &push.normal) > PARALLEL
+    }
+
+    /// How much of a point's row lies behind the face [1].
+    fn covers(&self, push: &Push<D>, spacing: f64) -> f64 {
+        (1.0 + (self.row - dot(&self.normal, &push.to)) / spacing).clamp(0.0, 1.0)
     }
 }
 
@@ -103,9 +116,9 @@ pub(super) fn part_at_corners<const D: usize>(
         };
         let mut met: Vec<(f64, &Face<D>)> = Vec::with_capacity(D);
         for (share, face) in shares[own].iter().zip(&faces) {
-            let behind = dot(&face.normal, &push.to) < face.row + 0.5 * spacing;
-            if *share > 0.0 && behind {
-                keep_best(&mut met, (*share, face));
+            let share = share * face.covers(&push, spacing);
+            if share > 0.0 {
+                keep_best(&mut met, (share, face));
             }
         }
         let own = dual(&push.normal, met.iter().map(|(_, f)| f.normal));
@@ -153,7 +166,7 @@ fn faces<const D: usize>(pushes: &[Push<D>]) -> Vec<Face<D>> {
 /// goes on from it.
 fn shares<const D: usize>(faces: &[Face<D>], pushes: &[Push<D>], spacing: f64) -> Vec<Vec<f64>> {
     let is_before = |a: &Face<D>, b: &Face<D>| {
-        let mut own = pushes.iter().filter(|p| a.has(p));
+        let mut own = pushes.iter().filter(|p| a.goes_on_at(p));
         own.any(|p| dot(&b.normal, &p.to) > b.row + 0.5 * spacing)
     };
     let share = |own: &Face<D>, other: &Face<D>| {
