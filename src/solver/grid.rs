@@ -55,7 +55,13 @@ impl<const D: usize> Periodic<D> {
             if l > 0.0 {
                 let t = x[k] - self.lower[k];
                 if !(0.0..l).contains(&t) {
-                    x[k] = self.lower[k] + t.rem_euclid(l);
+                    let wrapped = self.lower[k] + t.rem_euclid(l);
+                    // What lies below by less than rounding would come to stand at the upper end.
+                    x[k] = if wrapped - self.lower[k] < l {
+                        wrapped
+                    } else {
+                        self.lower[k]
+                    };
                 }
             }
         }
@@ -75,6 +81,29 @@ impl<const D: usize> Near<D> {
         Self {
             cell: None,
             runs: Vec::new(),
+        }
+    }
+}
+
+/// Makes cells wider along the axes with most of them until there are no more than points deserve: 80 each.
+fn widen<const D: usize>(
+    points: usize,
+    extents: &Vector<D>,
+    periodic: &Periodic<D>,
+    count: &mut [usize; D],
+    edges: &mut Vector<D>,
+) {
+    let most = 80.0 * points as f64 + 4096.0;
+    while count.iter().map(|&n| n as f64).product::<f64>() > most {
+        let Some(k) = (0..D).max_by_key(|&k| count[k]) else {
+            return;
+        };
+        if periodic.length[k] > 0.0 {
+            count[k] = count[k].div_ceil(2);
+            edges[k] = extents[k] / count[k] as f64;
+        } else {
+            edges[k] *= 2.0;
+            count[k] = (extents[k] / edges[k]).floor() as usize + 1;
         }
     }
 }
@@ -120,6 +149,11 @@ impl<'a, const D: usize> Grid<'a, D> {
                 low[k] = 0.0;
             }
         }
+        let extents: Vector<D> = std::array::from_fn(|k| match periodic.length[k] {
+            l if l > 0.0 => l,
+            _ => high[k] - low[k],
+        });
+        widen(points.len(), &extents, periodic, &mut count, &mut edges);
         let mut grid = Self {
             periodic,
             origin: low,
@@ -231,6 +265,63 @@ impl<'a, const D: usize> Grid<'a, D> {
                     _ => runs.push(start..end),
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NONE: Periodic<3> = Periodic {
+        lower: [0.0; 3],
+        length: [0.0; 3],
+    };
+
+    /// Spray over a large room: cells for the points and not for the room, and all pairs are found.
+    #[test]
+    fn cells_are_as_many_as_the_points_deserve() {
+        let at = |n: u32, by: u32| f64::from(n * by % 1009) / 10.09;
+        let points: Vec<Vector<3>> = (0..1000)
+            .map(|n| [at(n, 17), at(n, 313), at(n, 701)])
+            .collect();
+        let long = Periodic {
+            length: [100.0, 100.0, 0.0],
+            ..NONE
+        };
+        for (periodic, edge) in [(NONE, 3.0), (NONE, 1e-3), (long, 3.0), (long, 1e-6)] {
+            let grid = Grid::build(&points, edge, &periodic);
+            assert!(grid.start.len() <= 80 * 1000 + 4097, "{}", grid.start.len());
+            let mut near = Near::new();
+            for (i, x) in points.iter().enumerate() {
+                grid.find_runs(x, &mut near);
+                let mut found: Vec<u32> = near
+                    .runs
+                    .iter()
+                    .flat_map(|run| grid.points(run))
+                    .copied()
+                    .collect();
+                found.sort_unstable();
+                for (j, y) in points.iter().enumerate() {
+                    let r = periodic.difference(x, y);
+                    let is_near = r.iter().map(|c| c * c).sum::<f64>() < edge * edge;
+                    let is_found = found.binary_search(&(j as u32)).is_ok();
+                    assert!(is_found || !is_near, "{i} and {j} at {r:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_below_a_period_by_rounding_stays_in_it() {
+        let periodic = Periodic {
+            lower: [0.0],
+            length: [1.0],
+        };
+        for below in [-1e-20, -1e-17, -1e-300] {
+            let mut x = [below];
+            periodic.wrap(&mut x);
+            assert!((0.0..1.0).contains(&x[0]), "{below}: {x:?}");
         }
     }
 }
