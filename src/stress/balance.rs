@@ -16,18 +16,20 @@ pub(super) struct Before {
     /// Mass present and mass that came in [kg].
     pub(super) mass: f64,
     pub(super) inflow: f64,
-    /// Openings of all gates.
+    /// Openings of all gates, and whether material held or slowed each in the last step.
     pub(super) openings: Vec<f64>,
+    pub(super) blocked: Vec<bool>,
 }
 
 impl Before {
     /// Now.
     pub(super) fn of(component: &Component, totals: Totals) -> Self {
         let ledger = component.ledger();
-        let opening = |gate: usize| {
+        let table = component.variables();
+        let read = |reference| {
             let mut value = [0.0];
             // What is of the component's own table can be read in every mode that a ride is in.
-            let _ = component.get(&[component.variables().actual_opening(gate)], &mut value);
+            let _ = component.get(&[reference], &mut value);
             value[0]
         };
         let gates = 0..component.scene().gates.len();
@@ -35,7 +37,11 @@ impl Before {
             totals,
             mass: ledger.present,
             inflow: ledger.inflow,
-            openings: gates.map(opening).collect(),
+            openings: gates
+                .clone()
+                .map(|g| read(table.actual_opening(g)))
+                .collect(),
+            blocked: gates.map(|g| read(table.gate_blocked(g)) != 0.0).collect(),
         }
     }
 }

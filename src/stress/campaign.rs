@@ -1,7 +1,7 @@
 //! Many seeds, several side by side.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
@@ -93,9 +93,9 @@ impl Campaign {
                 }
                 let tried = self.attempt(seed);
                 watch(&tried);
-                if let Ok(mut all) = all.lock() {
-                    all.push(tried);
-                }
+                all.lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .push(tried);
             }
         };
         std::thread::scope(|scope| {
@@ -104,7 +104,7 @@ impl Campaign {
             }
             work();
         });
-        let mut all = all.into_inner().unwrap_or_default();
+        let mut all = all.into_inner().unwrap_or_else(PoisonError::into_inner);
         all.sort_by_key(|t| t.seed);
         all
     }

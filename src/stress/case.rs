@@ -101,8 +101,25 @@ impl Case {
             .try_into()
             .map_err(|e| format!("section [stress]: {e}"))?;
         let bad = |what: &str| Err(format!("section [stress]: {what}"));
-        if drive.steps.is_empty() || drive.steps.iter().any(|h| !(*h > 0.0 && h.is_finite())) {
+        let is_time = |h: &f64| *h > 0.0 && h.is_finite();
+        if drive.steps.is_empty() || !drive.steps.iter().all(is_time) {
             return bad("steps: allowed is a list of times above 0 s, at least one");
+        }
+        if drive
+            .twin
+            .as_ref()
+            .is_some_and(|t| !t.steps.iter().all(is_time))
+        {
+            return bad("twin.steps: allowed is a list of times above 0 s");
+        }
+        if drive.count == 0 || drive.most_steps == 0 {
+            return bad("count, most_steps: allowed is at least 1, or nothing is checked");
+        }
+        if drive.restore_after >= drive.count {
+            return bad(&format!(
+                "restore_after: found {}, allowed is less than count, {}, or nothing is run again",
+                drive.restore_after, drive.count
+            ));
         }
         let most = usize::from(Component::MOST_THREADS);
         if !(1..=most).contains(&drive.threads) {
@@ -162,6 +179,18 @@ mod tests {
         assert!(unknown.contains("many_steps"), "{unknown}");
         let none = Case::read(&text.replace("threads = 2", "threads = 0")).unwrap_err();
         assert!(none.contains("threads"), "{none}");
+        // What would pass without anything checked.
+        let drive = Case::read(&text).unwrap().drive;
+        let count = format!("count = {}", drive.count);
+        let restore = format!("restore_after = {}", drive.restore_after);
+        let late = format!("restore_after = {}", drive.count);
+        for (old, new, named) in [
+            (&count, "count = 0", "count"),
+            (&restore, late.as_str(), "restore_after"),
+        ] {
+            let why = Case::read(&text.replacen(old, new, 1)).unwrap_err();
+            assert!(why.contains(named), "{why}");
+        }
         assert!(Case::read("[stress").is_err());
     }
 }

@@ -118,6 +118,6 @@ fn changed(case: &Case, twin: &Twin) -> Result<Case, String> {
         other.drive.steps.clone_from(&twin.steps);
     }
     // Both must get as far.
-    other.drive.most_steps *= 100;
+    other.drive.most_steps = other.drive.most_steps.saturating_mul(100);
     Ok(other)
 }

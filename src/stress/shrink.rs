@@ -69,8 +69,12 @@ fn shorter(case: &Case) -> Vec<Case> {
     let mut found = Vec::new();
     let drive = &case.drive;
     if drive.count > 1 {
-        found.push(changed(case, |c| c.drive.count /= 2));
-        found.push(changed(case, |c| c.drive.count -= 1));
+        for count in [drive.count / 2, drive.count - 1] {
+            found.push(changed(case, |c| {
+                c.drive.count = count;
+                c.drive.restore_after = c.drive.restore_after.min(count - 1);
+            }));
+        }
     }
     if drive.most_steps > 1 {
         found.push(changed(case, |c| c.drive.most_steps /= 2));

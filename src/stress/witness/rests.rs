@@ -57,10 +57,12 @@ impl Witness<'_> {
             let (from, to) = (self.before.openings[*i], now.openings[*i]);
             let moved = (to - from) * length;
             let most = gate.max_speed * h * (1.0 + 1e-9) + 1e-12 * length;
-            // A plate that closes may wait for grains; one that opens has nothing in its way.
+            // A plate that closes may wait for grains, and says so; one that opens has nothing in its way.
             let speed = gate.max_speed.min(self.scene.numerics.plate_speed());
-            let least = ((value - from) * length).min(speed * h).max(0.0);
-            let arrives = *value <= from || moved >= least * (1.0 - 1e-6) - 1e-9 * length;
+            let way = (value - from) * length;
+            let least = way.abs().min(speed * h);
+            let waits = way < 0.0 && now.blocked[*i];
+            let arrives = waits || moved * way.signum() >= least * (1.0 - 1e-6) - 1e-9 * length;
             if !(0.0..=1.0).contains(&to) || moved.abs() > most || !arrives {
                 self.fail(
                     Check::Gate,
@@ -68,7 +70,7 @@ impl Witness<'_> {
                     format!(
                         "gate {} told {value} went from {from} to {to} in {h} s, allowed at most {most} m{}",
                         gate.name,
-                        if arrives { String::new() } else { format!(" and at least {least} m") }
+                        if arrives { String::new() } else { format!(" and at least {least} m, as it is not blocked") }
                     ),
                 );
             }
