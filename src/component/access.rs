@@ -30,7 +30,8 @@ impl Component {
         let settled = !self.is_unsettled() && !references.iter().any(fixed);
         for (row, value) in self.settable("set", references)?.into_iter().zip(values) {
             let range = self.range_now(row, settled);
-            accepted.push(accept((row, range), *value, saturates, &mut notes)?);
+            let slack = self.slack_of(row);
+            accepted.push(accept((row, range, slack), *value, saturates, &mut notes)?);
         }
         self.notes.append(&mut notes);
         for (reference, value) in references.iter().zip(&accepted) {
@@ -64,6 +65,14 @@ impl Component {
             Some(Source::InflowRate(_)) => Some((0.0, f64::MAX)),
             _ => row.range,
         }
+    }
+
+    /// By how much an input may be out of its range, SI; a rate's range has no end while parameters wait.
+    fn slack_of(&self, row: &Variable) -> f64 {
+        let span = self
+            .range_now(row, true)
+            .map_or(0.0, |(least, most)| most - least);
+        RANGE_SLACK * span
     }
 
     /// The range of a variable, SI; that of an inflow's rate follows from its material's density as it is set, and is only that rates
@@ -288,7 +297,7 @@ impl VariableTable {
 
 /// The value as it is taken: inputs a little out of range, or if they are saturated far, are clamped.
 fn accept(
-    (row, range): (&Variable, Option<(f64, f64)>),
+    (row, range, slack): (&Variable, Option<(f64, f64)>, f64),
     value: f64,
     saturates: bool,
     notes: &mut Vec<String>,
@@ -299,7 +308,7 @@ fn accept(
         && !(least..=most).contains(&value)
     {
         let clamped = value.clamp(least, most);
-        if (value - clamped).abs() <= RANGE_SLACK * (most - least) {
+        if (value - clamped).abs() <= slack {
             return Ok(clamped);
         }
         if saturates {

@@ -489,6 +489,19 @@ fn the_most_that_an_inflow_lets_in_follows_the_density_that_is_set() {
     heavy.set(&[rate], &[reached]).unwrap();
     assert!(heavy.set(&[rate], &[8.1]).is_err());
 
+    // It is not negative whatever waits.
+    let mut negative = fresh();
+    let error = negative
+        .set(&[density, rate], &[20.0, -1.0])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("inflow.rain.rate") && error.contains("-1"),
+        "{error}"
+    );
+    negative.set(&[density], &[20.0]).unwrap();
+    assert!(negative.set(&[rate], &[-1.0]).is_err());
+
     // With the scene's own density nothing waits.
     let mut own = fresh();
     assert!(own.set(&[rate], &[4.1]).is_err());
