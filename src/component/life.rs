@@ -64,6 +64,19 @@ impl Life {
         };
         Ok((engine, life))
     }
+
+    /// Whether all of its figures are numbers. Saved ones may be anything.
+    fn is_finite(&self) -> bool {
+        let inputs = self
+            .inputs
+            .gate_opening
+            .iter()
+            .chain(&self.inputs.inflow_rate);
+        let ramps = inputs.flat_map(|ramp| [&ramp.value, &ramp.slope]);
+        let values = [&self.parameters, &self.outputs, &self.before];
+        let mut all = ramps.chain(values.into_iter().flatten()).chain(&self.steps);
+        self.time.is_finite() && all.all(|x| x.is_finite())
+    }
 }
 
 impl Component {
@@ -142,6 +155,11 @@ impl Component {
                 counts(&life),
                 counts(&self.life)
             )));
+        }
+        if !life.is_finite() {
+            return Err(Error::Snapshot(
+                "found NaN or infinity among its times, inputs, parameters or outputs".to_owned(),
+            ));
         }
         Ok((life, engine))
     }

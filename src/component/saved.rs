@@ -62,11 +62,12 @@ impl<const D: usize> Saved<D> {
                 .all(|g| share(g.opening) && share(g.listed_opening) && g.rate.is_finite())
             && saved.state.gates.len() == now.gates.len()
             && saved.state.inflows.len() == now.inflows.len()
-            && saved
-                .state
-                .inflows
-                .iter()
-                .all(|i| share(i.advance) && share(i.listed_advance) && i.rate.is_finite())
+            && saved.state.inflows.iter().all(|i| {
+                let figures = [i.rate, i.pending, i.admitted];
+                share(i.advance) && share(i.listed_advance) && figures.iter().all(|x| x.is_finite())
+            })
+            && state.is_finite()
+            && saved.crossed.iter().all(|x| x.is_finite())
             && saved.state.drained.len() == now.drained.len()
             && saved.state.impulse.len() == now.impulse.len()
             && saved.crossed.len() == sampler.crossed().len();

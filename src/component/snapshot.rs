@@ -7,6 +7,7 @@
 use super::Error;
 use crate::scene::MOST_PARTICLES;
 use crate::units::hex;
+use bincode::error::DecodeError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
@@ -61,7 +62,10 @@ pub(super) fn encode<T: Serialize>(value: &T) -> Result<Vec<u8>, String> {
 /// The bytes are cut short, too long, or of something else.
 pub(super) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
     let (value, used) =
-        bincode::serde::decode_from_slice(bytes, config()).map_err(|e| e.to_string())?;
+        bincode::serde::decode_from_slice(bytes, config()).map_err(|error| match error {
+            DecodeError::UnexpectedEnd { .. } => "it ends too early".to_owned(),
+            other => format!("found bytes that no state has: {other}"),
+        })?;
     if used != bytes.len() {
         return Err(format!("{} bytes too many at the end", bytes.len() - used));
     }

@@ -69,6 +69,24 @@ pub struct RestState<const D: usize> {
 }
 
 impl<const D: usize> State<D> {
+    /// Whether all that is not of particles, gates and inflows is a number. Saved ones may be anything.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let rest = &self.rest;
+        let single = [
+            self.time,
+            self.pose.now,
+            self.pose.listed,
+            self.initial_mass,
+            self.step_size,
+            self.trend,
+            rest.quiet_time,
+        ];
+        let vectors = self.impulse.iter().chain(&rest.impulse).chain(&rest.force);
+        let mut all = single.iter().chain(&self.drained).chain(vectors.flatten());
+        all.all(|x| x.is_finite())
+    }
+
     /// From here on `blocked` of gates and inflows tells what happens: a communication step begins.
     pub fn forget_blocked(&mut self) {
         self.gates.iter_mut().for_each(|gate| gate.blocked = false);

@@ -220,6 +220,15 @@ fn five_hundred_bad_states_are_refused_without_harm() {
     bad.push(sealed(&good, &[good[84..].to_vec(), vec![0]].concat()));
     bad.push(foreign);
     assert_eq!(bad.len(), 500);
+    // Times that are no number: of the component and of the solver.
+    let time = instance.time().to_le_bytes();
+    let places = (84..good.len() - 8).filter(|&at| good[at..at + 8] == time);
+    for at in places.collect::<Vec<_>>() {
+        let mut payload = good[84..].to_vec();
+        payload[at - 84..at - 76].copy_from_slice(&f64::NAN.to_le_bytes());
+        bad.push(sealed(&good, &payload));
+    }
+    assert!(bad.len() > 501, "{} places", bad.len() - 500);
     for (i, bytes) in bad.iter().enumerate() {
         let begin = Instant::now();
         let checked = instance.check_saved(bytes).unwrap_err().to_string();

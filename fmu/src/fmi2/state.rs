@@ -23,11 +23,8 @@ pub(crate) extern "C" fn fmi2SetFMUstate(c: Handle, state: StateHandle) -> Statu
 
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi2FreeFMUstate(c: Handle, mut state: StateSlot) -> Status {
-    c.call("fmi2FreeFMUstate", Need::Any, |_| {
-        state.free();
-        Ok(())
-    })
-    .into()
+    c.call("fmi2FreeFMUstate", Need::Any, |_| state.free())
+        .into()
 }
 
 #[unsafe(no_mangle)]

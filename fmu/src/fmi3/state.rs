@@ -20,11 +20,8 @@ pub(crate) extern "C" fn fmi3SetFMUState(c: Handle, state: StateHandle) -> Statu
 
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn fmi3FreeFMUState(c: Handle, mut state: StateSlot) -> Status {
-    c.call("fmi3FreeFMUState", Need::Any, |_| {
-        state.free();
-        Ok(())
-    })
-    .into()
+    c.call("fmi3FreeFMUState", Need::Any, |_| state.free())
+        .into()
 }
 
 #[unsafe(no_mangle)]

@@ -1,6 +1,8 @@
 //! Saved states that the importer keeps a pointer to (`fmi2FMUstate`, `fmi3FMUState`).
 
+use std::collections::BTreeSet;
 use std::ptr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::fault::Fault;
 use crate::instance::Experiment;
@@ -27,6 +29,18 @@ impl SavedState {
     }
 }
 
+/// Addresses of all states that were got and not freed. Importers free twice, or use what they have freed; that is an error and not
+/// the end of their process.
+static LIVE: Mutex<BTreeSet<usize>> = Mutex::new(BTreeSet::new());
+
+fn live() -> MutexGuard<'static, BTreeSet<usize>> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn is_live(state: *const SavedState) -> bool {
+    live().contains(&state.addr())
+}
+
 /// A state pointer passed by value.
 #[repr(transparent)]
 pub(crate) struct StateHandle(*const SavedState);
@@ -34,9 +48,17 @@ pub(crate) struct StateHandle(*const SavedState);
 impl StateHandle {
     /// The state.
     pub(crate) fn get(&self) -> Result<&SavedState, Fault> {
-        // SAFETY: the importer promises NULL or a pointer that a StateSlot gave it and that it has not freed.
-        unsafe { self.0.as_ref() }
-            .ok_or_else(|| Fault::border("state: found NULL, expected a state that was got before"))
+        let found = if self.0.is_null() {
+            "NULL"
+        } else if is_live(self.0) {
+            // SAFETY: a StateSlot gave it out, and it has not been freed.
+            return Ok(unsafe { &*self.0 });
+        } else {
+            "a pointer to none, or to one that was freed"
+        };
+        Err(Fault::border(format!(
+            "state: found {found}, expected a state that was got before"
+        )))
     }
 }
 
@@ -48,23 +70,33 @@ impl StateSlot {
     /// Puts a state in. A slot that holds one already is used again, as the standards ask.
     pub(crate) fn put(&mut self, state: SavedState) -> Result<(), Fault> {
         let slot = self.slot()?;
-        // SAFETY: the importer promises NULL or a pointer that this function gave it and that it has not freed.
-        match unsafe { slot.as_mut() } {
-            Some(old) => *old = state,
-            None => *slot = Box::into_raw(Box::new(state)),
+        if is_live(*slot) {
+            // SAFETY: this function gave it out, and it has not been freed.
+            unsafe { **slot = state };
+        } else {
+            *slot = Box::into_raw(Box::new(state));
+            live().insert(slot.addr());
         }
         Ok(())
     }
 
     /// Frees the state and leaves NULL. NULL, or a slot with NULL inside, is fine.
-    pub(crate) fn free(&mut self) {
-        if let Ok(slot) = self.slot()
-            && !slot.is_null()
-        {
-            // SAFETY: not NULL, so `put` made it with Box::into_raw, and it is replaced by NULL: freed only once.
-            drop(unsafe { Box::from_raw(*slot) });
-            *slot = ptr::null_mut();
+    pub(crate) fn free(&mut self) -> Result<(), Fault> {
+        let Ok(slot) = self.slot() else {
+            return Ok(());
+        };
+        let state = std::mem::replace(slot, ptr::null_mut());
+        if state.is_null() {
+            return Ok(());
         }
+        if !live().remove(&state.addr()) {
+            return Err(Fault::border(
+                "state: found a pointer to none, or to one that was freed before",
+            ));
+        }
+        // SAFETY: `put` made it with Box::into_raw, and it is live no more: freed only once.
+        drop(unsafe { Box::from_raw(state) });
+        Ok(())
     }
 
     fn slot(&mut self) -> Result<&mut *mut SavedState, Fault> {
@@ -91,11 +123,22 @@ mod tests {
         slot.put(state(2)).expect("a place");
         assert_eq!(first, place);
         assert_eq!(StateHandle(place).get().expect("a state").bytes, [2]);
-        slot.free();
+        let copy = place;
+        slot.free().expect("it is live");
         assert!(place.is_null());
-        slot.free();
+        slot.free().expect("NULL is fine");
         assert!(StateHandle(place).get().is_err());
+        // What the importer kept of it.
+        let said = StateHandle(copy).get().expect_err("freed").to_string();
+        assert!(said.contains("freed"), "{said}");
+        let mut kept = copy;
+        let twice = StateSlot(&raw mut kept).free().expect_err("freed");
+        assert!(twice.to_string().contains("freed before"), "{twice}");
+        kept = copy;
+        StateSlot(&raw mut kept).put(state(3)).expect("a new one");
+        assert_eq!(StateHandle(kept).get().expect("a state").bytes, [3]);
+        StateSlot(&raw mut kept).free().expect("it is live");
         assert!(StateSlot(ptr::null_mut()).put(state(1)).is_err());
-        StateSlot(ptr::null_mut()).free();
+        StateSlot(ptr::null_mut()).free().expect("NULL is fine");
     }
 }

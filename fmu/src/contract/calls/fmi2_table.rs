@@ -33,14 +33,14 @@ pub(super) fn calls_of_fmi2() -> Vec<Row> {
         "fmi2SetBoolean", NEVER, |h, n| ok(fmi2::fmi2SetBoolean(h.handle(), of(&[n.blocked]), 1, of(&[1])));
         "fmi2SetString", BEFORE_STEPS, |h, n| ok(fmi2::fmi2SetString(h.handle(), of(&[n.path]), 1, of(&[text(c"x")])));
         "fmi2SetString", NEVER, |h, n| ok(fmi2::fmi2SetString(h.handle(), of(&[n.output]), 1, of(&[text(c"x")])));
-        "fmi2GetFMUstate", ALL, |h, _| { let mut p = Place(ptr::null_mut()); let s = fmi2::fmi2GetFMUstate(h.handle(), p.slot()); p.slot().free(); ok(s) };
+        "fmi2GetFMUstate", ALL, |h, _| { let mut p = Place(ptr::null_mut()); let s = fmi2::fmi2GetFMUstate(h.handle(), p.slot()); p.slot().free().expect("it is live or NULL"); ok(s) };
         "fmi2SetFMUstate", ALL, |h, _| ok(with_state(h, |p| fmi2::fmi2SetFMUstate(h.handle(), p.handle())));
         "fmi2SetFMUstate", NEVER, |h, _| ok(fmi2::fmi2SetFMUstate(h.handle(), none()));
         "fmi2FreeFMUstate", ALL, |h, _| ok(with_state(h, |p| fmi2::fmi2FreeFMUstate(h.handle(), p.slot())));
         "fmi2SerializedFMUstateSize", ALL, |h, _| ok(with_state(h, |p| fmi2::fmi2SerializedFMUstateSize(h.handle(), p.handle(), to(&mut [0]))));
         "fmi2SerializeFMUstate", ALL, |h, _| { let mut b = h.state(); ok(with_state(h, |p| fmi2::fmi2SerializeFMUstate(h.handle(), p.handle(), to(&mut b), b.len()))) };
         "fmi2SerializeFMUstate", NEVER, |h, _| ok(with_state(h, |p| fmi2::fmi2SerializeFMUstate(h.handle(), p.handle(), to(&mut [0; 8]), 8)));
-        "fmi2DeSerializeFMUstate", ALL, |h, _| { let b = h.state(); let mut p = Place(ptr::null_mut()); let s = fmi2::fmi2DeSerializeFMUstate(h.handle(), of(&b), b.len(), p.slot()); p.slot().free(); ok(s) };
+        "fmi2DeSerializeFMUstate", ALL, |h, _| { let b = h.state(); let mut p = Place(ptr::null_mut()); let s = fmi2::fmi2DeSerializeFMUstate(h.handle(), of(&b), b.len(), p.slot()); p.slot().free().expect("it is live or NULL"); ok(s) };
         "fmi2DeSerializeFMUstate", NEVER, |h, _| { let mut p = Place(ptr::null_mut()); ok(fmi2::fmi2DeSerializeFMUstate(h.handle(), of(b"rubbish"), 7, p.slot())) };
         "fmi2GetDirectionalDerivative", NEVER, |h, _| ok(fmi2::fmi2GetDirectionalDerivative(h.handle(), none(), 0, none(), 0, none(), none()));
         "fmi2SetRealInputDerivatives", SETTABLE, |h, n| ok(fmi2::fmi2SetRealInputDerivatives(h.handle(), of(&[n.opening]), 1, of(&[1]), of(&[0.5])));

@@ -76,13 +76,13 @@ fn values() -> Vec<Row> {
 #[rustfmt::skip]
 fn states() -> Vec<Row> {
     calls! {
-        "fmi3GetFMUState", ALL, |h, _| { let mut p = Place(ptr::null_mut()); let s = fmi3::fmi3GetFMUState(h.handle(), p.slot()); p.slot().free(); ok(s) };
+        "fmi3GetFMUState", ALL, |h, _| { let mut p = Place(ptr::null_mut()); let s = fmi3::fmi3GetFMUState(h.handle(), p.slot()); p.slot().free().expect("it is live or NULL"); ok(s) };
         "fmi3SetFMUState", ALL, |h, _| ok(with_state(h, |p| fmi3::fmi3SetFMUState(h.handle(), p.handle())));
         "fmi3SetFMUState", NEVER, |h, _| ok(fmi3::fmi3SetFMUState(h.handle(), none()));
         "fmi3FreeFMUState", ALL, |h, _| ok(with_state(h, |p| fmi3::fmi3FreeFMUState(h.handle(), p.slot())));
         "fmi3SerializedFMUStateSize", ALL, |h, _| ok(with_state(h, |p| fmi3::fmi3SerializedFMUStateSize(h.handle(), p.handle(), to(&mut [0]))));
         "fmi3SerializeFMUState", ALL, |h, _| { let mut b = h.state(); ok(with_state(h, |p| fmi3::fmi3SerializeFMUState(h.handle(), p.handle(), to(&mut b), b.len()))) };
-        "fmi3DeserializeFMUState", ALL, |h, _| { let b = h.state(); let mut p = Place(ptr::null_mut()); let s = fmi3::fmi3DeserializeFMUState(h.handle(), of(&b), b.len(), p.slot()); p.slot().free(); ok(s) };
+        "fmi3DeserializeFMUState", ALL, |h, _| { let b = h.state(); let mut p = Place(ptr::null_mut()); let s = fmi3::fmi3DeserializeFMUState(h.handle(), of(&b), b.len(), p.slot()); p.slot().free().expect("it is live or NULL"); ok(s) };
         "fmi3DeserializeFMUState", NEVER, |h, _| { let mut p = Place(ptr::null_mut()); ok(fmi3::fmi3DeserializeFMUState(h.handle(), of(b"rubbish"), 7, p.slot())) };
     }
 }

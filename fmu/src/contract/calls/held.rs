@@ -119,7 +119,7 @@ pub(super) fn with_state(held: &Held, work: impl FnOnce(&mut Place) -> Status) -
         .call("test", Need::Any, |i| slot.put(i.save()?))
         .expect("it can be saved");
     let status = work(&mut place);
-    place.slot().free();
+    place.slot().free().expect("it is live or NULL");
     status
 }
 
