@@ -188,12 +188,21 @@ pub(super) fn outputs(map: &mut Map<String, Value>) -> Result<Option<Vec<String>
     }
 }
 
-pub(super) fn inputs(map: &mut Map<String, Value>) -> Result<Vec<(String, Vec<f64>)>, Refusal> {
+/// What an input is given.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Given {
+    /// Flat values; 1 is true, 0 is false.
+    pub flat: Vec<f64>,
+    /// Whether `true` or `false` is among them, which only booleans take.
+    pub has_flags: bool,
+}
+
+pub(super) fn inputs(map: &mut Map<String, Value>) -> Result<Vec<(String, Given)>, Refusal> {
     match map.remove("inputs") {
         None => Ok(Vec::new()),
         Some(Value::Object(entries)) => entries
             .into_iter()
-            .map(|(name, value)| values(&name, &value).map(|flat| (name, flat)))
+            .map(|(name, value)| given(&name, &value).map(|given| (name, given)))
             .collect(),
         Some(other) => Err(wrong(
             "inputs",
@@ -203,22 +212,25 @@ pub(super) fn inputs(map: &mut Map<String, Value>) -> Result<Vec<(String, Vec<f6
     }
 }
 
-/// The flat values of an input: a number, true or false, or an array of these.
-pub(super) fn values(name: &str, value: &Value) -> Result<Vec<f64>, Refusal> {
-    let scalar = |value: &Value| match value {
-        Value::Bool(x) => Some(f64::from(u8::from(*x))),
-        other => other.as_f64(),
+/// What an input is given: a number, true or false, or an array of these.
+pub(super) fn given(name: &str, value: &Value) -> Result<Given, Refusal> {
+    let items = match value {
+        Value::Array(items) => items.as_slice(),
+        plain => std::slice::from_ref(plain),
     };
-    let allowed = "a number, true, false, or an array of these";
-    match value {
-        Value::Array(items) => items
-            .iter()
-            .map(|item| scalar(item).ok_or_else(|| wrong(name, item, allowed)))
-            .collect(),
-        plain => scalar(plain)
-            .map(|x| vec![x])
-            .ok_or_else(|| wrong(name, plain, allowed)),
+    let mut given = Given::default();
+    for item in items {
+        given.flat.push(match item {
+            Value::Bool(flag) => {
+                given.has_flags = true;
+                f64::from(u8::from(*flag))
+            }
+            other => other
+                .as_f64()
+                .ok_or_else(|| wrong(name, other, "a number, true, false, or an array of these"))?,
+        });
     }
+    Ok(given)
 }
 
 pub(super) fn state(map: &mut Map<String, Value>) -> Result<Vec<u8>, Refusal> {

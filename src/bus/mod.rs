@@ -38,6 +38,7 @@ pub use advice::Advice;
 pub use answered::REMEMBERED;
 pub use endpoints::{BadEndpoint, DEFAULT_LISTEN};
 pub use error::BusError;
+pub use fields::Given;
 pub use keys::Keys;
 pub use protocol::Protocol;
 pub use reach::Reach;

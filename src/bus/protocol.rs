@@ -169,7 +169,7 @@ impl Protocol {
         self.guarded(|protocol| {
             protocol.goes_on()?;
             protocol.whole()?;
-            let inputs = [(point.variable.clone(), point.values.clone())];
+            let inputs = [(point.variable.clone(), point.given.clone())];
             let assignment = Assignment::resolve(component.variables(), &inputs)?;
             assign(component, &assignment, point.source(), observer)
         })

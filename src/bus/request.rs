@@ -2,7 +2,7 @@
 //! and what to do. Pure, quick (it runs in network callbacks), and knows no component: names of variables and ranges
 //! are checked in `protocol`.
 
-use super::fields::{self, bad};
+use super::fields::{self, Given, bad};
 use super::json;
 use super::refusal::{Code, Refusal};
 use super::verb::Verb;
@@ -22,8 +22,8 @@ pub struct Request {
     pub t_ns: Option<i64>,
     /// Length of the step (ns).
     pub dt_ns: Option<u64>,
-    /// Inputs: name and flat values.
-    pub inputs: Vec<(String, Vec<f64>)>,
+    /// Inputs: name and what it is given.
+    pub inputs: Vec<(String, Given)>,
     /// Names of variables to answer with.
     pub outputs: Option<Vec<String>>,
     /// Count of steps at which the client believes the component to be.
@@ -168,12 +168,16 @@ mod tests {
             request.outputs.as_deref(),
             Some(&["gauge.weir.depth".to_owned()][..])
         );
+        let given = |name: &str, flat: &[f64], has_flags| {
+            let flat = flat.to_vec();
+            (name.to_owned(), Given { flat, has_flags })
+        };
         assert_eq!(
             request.inputs,
             [
-                ("gate.main.opening".to_owned(), vec![0.35]),
-                ("flag".to_owned(), vec![1.0]),
-                ("row".to_owned(), vec![1.0, 2.0])
+                given("gate.main.opening", &[0.35], false),
+                given("flag", &[1.0], true),
+                given("row", &[1.0, 2.0], false)
             ]
         );
     }

@@ -1,6 +1,6 @@
 //! Set-points as typed: what is published to `B/in/VARIABLE`.
 
-use super::fields::{bad, cut, text, text_in, values};
+use super::fields::{Given, bad, cut, given, text, text_in};
 use super::json;
 use super::refusal::{Code, Refusal};
 use serde_json::Value;
@@ -13,8 +13,8 @@ const LONGEST_TOLD: usize = 4096;
 pub struct SetPoint {
     /// Variable's name.
     pub variable: String,
-    /// Flat values.
-    pub values: Vec<f64>,
+    /// What it is given.
+    pub given: Given,
     /// Who sent it; may be empty.
     pub client: String,
     /// As it came.
@@ -66,7 +66,7 @@ impl SetPoint {
         };
         Ok(Self {
             variable: variable.to_owned(),
-            values: values(variable, &value)?,
+            given: given(variable, &value)?,
             client,
             body: String::from_utf8_lossy(body).into_owned(),
         })
@@ -78,7 +78,7 @@ impl SetPoint {
         let told = &body[..body.len().min(LONGEST_TOLD)];
         Self {
             variable: cut(variable),
-            values: Vec::new(),
+            given: Given::default(),
             client: cut(&text_in(body, "client")),
             body: String::from_utf8_lossy(told).into_owned(),
         }
@@ -92,10 +92,11 @@ mod tests {
     #[test]
     fn set_points_are_values_with_or_without_a_sender() {
         let read = |body: &str| SetPoint::parse("v", body.as_bytes());
-        assert_eq!(read("0.5").unwrap().values, [0.5]);
-        assert_eq!(read("[1,true]").unwrap().values, [1.0, 1.0]);
+        assert_eq!(read("0.5").unwrap().given.flat, [0.5]);
+        let flags = read("[1,true]").unwrap().given;
+        assert_eq!((flags.flat, flags.has_flags), (vec![1.0, 1.0], true));
         let sent = read(r#"{"value":0.25,"client":"plc"}"#).unwrap();
-        assert_eq!((sent.values, sent.client.as_str()), (vec![0.25], "plc"));
+        assert_eq!((sent.given.flat, sent.client.as_str()), (vec![0.25], "plc"));
         for (body, code) in [
             ("NaN", Code::BadRequest),
             ("", Code::BadRequest),

@@ -1,6 +1,7 @@
 //! Names and JSON values ⇄ references and flat values of the variables table. The only part of the bus that reads the
 //! table's rows.
 
+use super::fields::Given;
 use super::json::number;
 use super::refusal::{Code, Refusal};
 use super::set_point::SetPoint;
@@ -21,16 +22,23 @@ pub(super) struct Assignment {
 }
 
 impl Assignment {
-    /// Finds the variables and checks lengths. Ranges and modes are the component's business.
+    /// Finds the variables, checks lengths and that only booleans are given `true` or `false`. Ranges and modes are the component's business.
     pub(super) fn resolve(
         table: &VariableTable,
-        inputs: &[(String, Vec<f64>)],
+        inputs: &[(String, Given)],
     ) -> Result<Self, Refusal> {
         let mut assignment = Self::default();
-        for (name, values) in inputs {
+        for (name, given) in inputs {
             let variable = find(table, name, |v| {
                 matches!(v.causality, Causality::Input | Causality::Parameter)
             })?;
+            let values = &given.flat;
+            if given.has_flags && variable.kind != ValueKind::Boolean {
+                return Err(Refusal::new(
+                    Code::Type,
+                    format!("{name}: found true or false, allowed a number"),
+                ));
+            }
             if values.len() != variable.len() {
                 return Err(Refusal::new(
                     Code::Type,
@@ -90,7 +98,9 @@ impl Settable {
             let whole = row.kind == ValueKind::Real || value.fract() == 0.0;
             whole && (least..=most).contains(value)
         };
-        point.values.len() == row.len() && point.values.iter().all(fits)
+        let Given { flat, has_flags } = &point.given;
+        let of_kind = !has_flags || row.kind == ValueKind::Boolean;
+        of_kind && flat.len() == row.len() && flat.iter().all(fits)
     }
 }
 

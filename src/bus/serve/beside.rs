@@ -12,6 +12,7 @@ use super::{ServeOptions, WAITING_REPLIES, session, spawn};
 use crate::bus::Protocol;
 use crate::bus::advice::Advice;
 use crate::bus::error::BusError;
+use crate::bus::fields::Given;
 use crate::bus::keys::Keys;
 use crate::bus::notes::{Notes, WAITING_NOTES, tell_refused, tell_taken, tell_unlogged};
 use crate::bus::publish::{LastValues, Publisher};
@@ -145,9 +146,13 @@ impl Beside {
                 continue; // The desk hands on nothing else.
             };
             match self.set(component, &point, owned, other) {
-                Ok((reference, values)) => {
+                Ok((reference, flat)) => {
                     tell_taken(self.time, &point, other);
-                    self.held.insert(reference, SetPoint { values, ..point });
+                    let given = Given {
+                        flat,
+                        ..point.given
+                    };
+                    self.held.insert(reference, SetPoint { given, ..point });
                 }
                 Err(refusal) => self.refuse(&point, &refusal, other),
             }
@@ -176,7 +181,7 @@ impl Beside {
         owned: &BTreeSet<ValueReference>,
         other: &mut dyn Observer,
     ) -> Result<(ValueReference, Vec<f64>), Refusal> {
-        let inputs = [(point.variable.clone(), point.values.clone())];
+        let inputs = [(point.variable.clone(), point.given.clone())];
         let assignment = Assignment::resolve(component.variables(), &inputs)?;
         let [reference] = assignment.references[..] else {
             return Err(Refusal::new(
@@ -207,7 +212,7 @@ impl Beside {
         point: &SetPoint,
         other: &mut dyn Observer,
     ) -> Result<(), Refusal> {
-        let inputs = [(point.variable.clone(), point.values.clone())];
+        let inputs = [(point.variable.clone(), point.given.clone())];
         let assignment = Assignment::resolve(component.variables(), &inputs)?;
         if assignment.present(component)?.values == assignment.values {
             return Ok(());

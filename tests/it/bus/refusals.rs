@@ -95,6 +95,12 @@ fn ten_bad_messages_are_refused_and_the_component_goes_on_unharmed() {
             "found 2 value(s), allowed 1",
         ),
         (
+            "set",
+            r#"{"req":"b13b","inputs":{"gate.main.opening":true}}"#,
+            "type",
+            "gate.main.opening: found true or false, allowed a number",
+        ),
+        (
             "restore",
             r#"{"req":"b14","state":"AAAA"}"#,
             "bad_request",

@@ -157,6 +157,7 @@ fn set_points_take_effect_with_the_next_step_or_are_refused() {
     for (variable, body, part) in [
         (GATE, "1.5", "allowed"),
         (GATE, "[0.1,0.2]", "2 value(s)"),
+        (GATE, "true", "allowed a number"),
         (GATE, "NaN", "not JSON"),
         ("gate.none.opening", "1", "unknown variable"),
         ("gauge.level.depth", "1", "gauge.level.depth"),
