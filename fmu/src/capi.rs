@@ -61,7 +61,7 @@ pub(crate) extern "C" fn sandgate_create(
     error_size: usize,
 ) -> Handle {
     create(&mut error, error_size, || {
-        let name = name.get("name").unwrap_or("scene");
+        let name = name.get_or("name", "scene")?;
         Ok(scene::parse(name, scene_text.get("scene_text")?))
     })
 }

@@ -155,6 +155,16 @@ impl Journal {
         Ok(())
     }
 
+    /// A session has no threads in a process that was forked: it stays with the one that opened it.
+    fn forget_lost_session(&mut self) {
+        if let Some(network) = self.network.take_if(|network| network.is_lost()) {
+            network.abandon();
+            self.complaint = Some(
+                "the Zenoh session stays with the process that this one was forked from".to_owned(),
+            );
+        }
+    }
+
     /// Whether something may come in while a step runs.
     pub(crate) fn listens(&self) -> bool {
         self.network.is_some()

@@ -19,7 +19,7 @@ const PROTOCOLS: &[&str] = if cfg!(feature = "tls") {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BadEndpoint {
     /// Not of the form that this build can open.
-    #[error("endpoint {found:?}: allowed is {}/HOST:PORT, PORT from 0 to 65535 (this build has no other transport)", PROTOCOLS.join("/HOST:PORT or "))]
+    #[error("endpoint {found:?}: allowed is {}/HOST:PORT, PORT from 0 to 65535 (this build has no other transport){}", PROTOCOLS.join("/HOST:PORT or "), missing(found))]
     Form {
         /// The endpoint.
         found: String,
@@ -52,6 +52,23 @@ pub enum BadEndpoint {
         /// The system's words.
         reason: String,
     },
+}
+
+/// What would bring the transport that an endpoint asks for.
+fn missing(endpoint: &str) -> &'static str {
+    if endpoint.starts_with("tls/") && !PROTOCOLS.contains(&"tls") {
+        "; tls comes with a program built by cargo build --release --features tls"
+    } else {
+        ""
+    }
+}
+
+/// Checks whom to join. Zenoh looks for ever for what has no port.
+///
+/// # Errors
+/// [`BadEndpoint::Form`].
+pub(super) fn check_form(endpoint: &str) -> Result<(), BadEndpoint> {
+    split(endpoint).map(|_| ())
 }
 
 /// Checks a listener.
@@ -196,10 +213,22 @@ mod tests {
             "tcp/:1",
             "tcp/h:70000",
         ] {
-            let refused = check_listener(bad, true, Advice::CommandLine);
-            let refusal = refused.unwrap_err().to_string();
-            assert!(refusal.contains("allowed is tcp/HOST:PORT"), "{refusal}");
+            for refused in [
+                check_listener(bad, true, Advice::CommandLine),
+                check_form(bad),
+            ] {
+                let refusal = refused.unwrap_err().to_string();
+                assert!(refusal.contains("allowed is tcp/HOST:PORT"), "{refusal}");
+            }
         }
+    }
+
+    #[test]
+    #[cfg(not(feature = "tls"))]
+    fn a_build_without_tls_says_how_to_get_it() {
+        let refusal = check_form("tls/example.org:7447").unwrap_err().to_string();
+        assert!(refusal.ends_with("--features tls"), "{refusal}");
+        assert_eq!(check_form("tcp/example.org:7447"), Ok(()));
     }
 
     #[test]

@@ -71,6 +71,12 @@ pub enum BusError {
         /// Who reads it.
         advice: Advice,
     },
+    /// Zenoh's threads are those of another process.
+    #[error(
+        "this process was forked from one that had opened a Zenoh session, whose threads it does not have; start it as a new \
+         program (Python: multiprocessing.set_start_method(\"spawn\")), or fork before the first session is opened"
+    )]
+    Forked,
     /// A thread could not be started.
     #[error("cannot start a thread: {0}")]
     Thread(String),

@@ -9,8 +9,8 @@ pub struct Reach {
     pub listeners: Vec<String>,
     /// Routers or peers through which others find it.
     pub through: Vec<String>,
-    /// Whether none of `through` answered yet: they are looked for.
-    pub looking: bool,
+    /// Why none of `through` answered yet: they are looked for.
+    pub unanswered: Option<String>,
 }
 
 impl Reach {
@@ -18,9 +18,9 @@ impl Reach {
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let listening = self.listeners.iter().map(|e| format!("listening on {e}"));
-        let through = self.through.iter().map(|e| match self.looking {
-            false => format!("reached through {e}"),
-            true => format!("looking for {e}, which does not answer yet"),
+        let through = self.through.iter().map(|e| match &self.unanswered {
+            None => format!("reached through {e}"),
+            Some(why) => format!("looking for {e}, which does not answer yet ({why})"),
         });
         listening.chain(through).collect()
     }
@@ -61,10 +61,10 @@ mod tests {
         );
         reach.listeners.clear();
         assert_eq!(reach.to_string(), "reached through tcp/c:3");
-        reach.looking = true;
+        reach.unanswered = Some("no route".to_owned());
         assert_eq!(
             reach.to_string(),
-            "looking for tcp/c:3, which does not answer yet"
+            "looking for tcp/c:3, which does not answer yet (no route)"
         );
     }
 }

@@ -180,6 +180,7 @@ impl CliError {
                 BusError::Zenoh { .. }
                 | BusError::LeftOpen { .. }
                 | BusError::Taken { .. }
+                | BusError::Forked
                 | BusError::Thread(_) => 6,
             },
             Self::ReaderGone => 0,

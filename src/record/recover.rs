@@ -139,7 +139,7 @@ impl Copy {
                 self.recovered.last = Some(message.log_time);
                 let id = self.channel(&message.channel);
                 let times = (message.log_time, message.publish_time);
-                let seconds = message.log_time as f64 * 1e-9;
+                let seconds = message.log_time as f64 / 1e9;
                 self.file
                     .message(seconds, id, message.sequence, times, &message.data);
             }

@@ -619,8 +619,29 @@ def test_only_users_with_their_password_get_in_and_do_what_the_list_allows(tmp_p
             plc.put(f"{BASE}/in/{GATE}", "8")
             until(lambda: counted() == 1)
             assert Component(guest, "small_silo").ask("status")["refused_set_points"] == 1
+            # Who watches sends nothing in the component's name: what it put came before the answer to what it asks then.
+            seen = []
+            listener = plc.declare_subscriber(f"{BASE}/out/**", seen.append)
+            Component(plc, "small_silo").ask("status")
+            guest.put(f"{BASE}/out/gauge/forged", "1")
+            token = guest.liveliness().declare_token(f"{BASE}/@alive/forged")
+            answers = guest.declare_queryable(f"{BASE}/@rpc/forged", lambda query: query.reply(query.key_expr, "1"))
+            Component(guest, "small_silo").ask("status")
+            Component(plc, "small_silo").ask("status")
+            assert not any("forged" in str(sample.key_expr) for sample in seen)
+            assert not list(plc.liveliness().get(f"{BASE}/@alive/forged", timeout=1.0))
+            assert not list(plc.get(f"{BASE}/@rpc/forged", timeout=1.0))
+            for declared in (listener, token, answers):
+                declared.undeclare()
     finally:
         server.end()
+
+
+def test_whom_to_join_is_checked_before_it_is_looked_for():
+    for endpoint in ("tcp/127.0.0.1", "nonsense", "tcp/:7447"):
+        command = [os.environ["SANDGATE"], "serve", str(SCENE), "--connect", endpoint]
+        refused = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        assert refused.returncode == 2 and "allowed is tcp/HOST:PORT" in refused.stderr, refused
 
 
 def test_the_name_may_stand_in_the_configuration(tmp_path):

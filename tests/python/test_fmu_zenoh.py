@@ -436,6 +436,35 @@ def test_a_network_that_cannot_open_costs_no_log(tmp_path):
     assert done.returncode == 0 and "same bits: 1 steps" in done.stdout, done.stdout + done.stderr
 
 
+@both
+def test_a_session_stays_with_the_process_that_opened_it(version):
+    with Published(version) as p:
+        p.fmu.step(0.0, H)
+        child = os.fork()
+        if child == 0:
+            # Who waits for threads that are not there is ended.
+            signal.alarm(60)
+            code = 1
+            try:
+                p.fmu.messages.clear()
+                p.fmu.step(H, H)
+                told = any("stays with the process" in text for _, _, text in p.fmu.messages)
+                p.fmu.fmu.terminate()
+                p.fmu.reset()
+                try:
+                    p.fmu.initialize(zenoh__config="{}")
+                except FMICallException:
+                    refused = "forked" in p.fmu.messages[-1][2]
+                    p.fmu.fmu.freeInstance()
+                    code = 0 if told and refused else 2
+            finally:
+                os._exit(code)
+        assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+        assert p.client.ask("status")["step"] == 1
+        p.fmu.step(H, H)
+        assert p.client.ask("status")["step"] == 2
+
+
 def test_an_fmu_without_zenoh_says_how_to_get_it():
     fmu = Fmu(os.environ["SANDGATE_PLAIN"])
     with pytest.raises(FMICallException):

@@ -102,6 +102,14 @@ fn check<T>(pointer: *const T, count: usize, what: &str) -> Result<(), Fault> {
 pub(crate) struct Text(*const c_char);
 
 impl Text {
+    /// The text, `default` for NULL.
+    pub(crate) fn get_or<'a>(&'a self, what: &str, default: &'a str) -> Result<&'a str, Fault> {
+        if self.0.is_null() {
+            return Ok(default);
+        }
+        self.get(what)
+    }
+
     /// The text.
     pub(crate) fn get(&self, what: &str) -> Result<&str, Fault> {
         if self.0.is_null() {
@@ -132,7 +140,20 @@ mod tests {
         assert!(out.write(&[], "x").is_ok());
         assert!(out.write(&[1.0], "x").is_err());
         out.write_if_wanted(1.0);
-        assert!(Text(ptr::null()).get("name").is_err());
+        let none = Text(ptr::null());
+        assert!(none.get("name").is_err());
+        assert!(
+            none.get_or("name", "scene")
+                .is_ok_and(|name| name == "scene")
+        );
+        let broken = [0xff_u8, 0];
+        let broken = Text(broken.as_ptr().cast());
+        let said = broken.get_or("name", "scene");
+        assert!(
+            said.expect_err("not UTF-8")
+                .to_string()
+                .contains("name: not UTF-8")
+        );
     }
 
     #[test]

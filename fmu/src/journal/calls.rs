@@ -19,6 +19,7 @@ impl Journal {
     pub(crate) fn begin(&mut self, call: &'static str) {
         self.call = call;
         self.told = false;
+        self.forget_lost_session();
     }
 
     /// It asks to step.

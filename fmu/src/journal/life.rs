@@ -127,6 +127,7 @@ impl Journal {
     /// The network's part in the end of the log: it hears what was asked to the last. Closing the session comes after the
     /// log's end, because it may take a while.
     fn leave(&mut self) -> Option<Parting> {
+        self.forget_lost_session();
         self.owned.clear();
         let network = self.network.take()?;
         Some(network.leave(listener(&mut self.log, &mut Unobserved)))

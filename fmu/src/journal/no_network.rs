@@ -21,6 +21,14 @@ impl Network {
         Err(Self::REFUSAL.unwrap_or_default().to_owned())
     }
 
+    pub(super) fn is_lost(&self) -> bool {
+        match *self {}
+    }
+
+    pub(super) fn abandon(self) {
+        match self {}
+    }
+
     pub(super) fn announcement(&self) -> String {
         match *self {}
     }

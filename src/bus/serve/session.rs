@@ -9,6 +9,8 @@ use crate::bus::error::{BusError, words};
 use crate::bus::keys::Keys;
 use crate::bus::reach::Reach;
 use serde_json::Value;
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 use zenoh::{Config, Session, Wait as _};
 
@@ -30,10 +32,12 @@ pub(super) fn open(
     alone: Option<&Keys>,
 ) -> Result<(OpenSession, Reach), BusError> {
     let wanted = wanted::configure(options)?;
+    refuse_fork()?;
     let may_be_client = match wanted.mode.as_deref() {
         None => wanted.listen.is_empty() && wanted.connect.len() == 1,
         Some(mode) => mode == "client",
     };
+    let mut unanswered = None;
     if may_be_client {
         match wanted.client_of(&wanted.connect) {
             Ok(session) => {
@@ -49,7 +53,8 @@ pub(super) fn open(
             }
             Err(error) if wanted.mode.is_some() => return Err(error),
             // Nobody is there yet: a router goes on looking.
-            Err(_) => {}
+            Err(BusError::Zenoh { reason, .. }) => unanswered = Some(reason),
+            Err(other) => return Err(other),
         }
     }
     let among_peers = !may_be_client && wanted.look_around(alone)?;
@@ -58,7 +63,7 @@ pub(super) fn open(
     } else {
         "router"
     };
-    wanted.listening(mode, may_be_client)
+    wanted.listening(mode, unanswered)
 }
 
 impl Wanted {
@@ -92,7 +97,11 @@ impl Wanted {
     }
 
     /// As a peer or router that others may connect to, and that looks for whom it shall connect to until they are there.
-    fn listening(self, mode: &str, looking: bool) -> Result<(OpenSession, Reach), BusError> {
+    fn listening(
+        self,
+        mode: &str,
+        unanswered: Option<String>,
+    ) -> Result<(OpenSession, Reach), BusError> {
         let mode = self.mode.as_deref().unwrap_or(mode);
         let mut config = self.config;
         insert(&mut config, "mode", &Value::from(mode).to_string())?;
@@ -105,7 +114,7 @@ impl Wanted {
         let reach = Reach {
             listeners,
             through: self.connect,
-            looking,
+            unanswered,
         };
         Ok((session, reach))
     }
@@ -149,6 +158,16 @@ fn not_opened(unbound: Option<BadEndpoint>, reason: String, advice: Advice) -> B
         None => "cannot open the session".to_owned(),
     };
     BusError::Zenoh { doing, reason }
+}
+
+/// Zenoh keeps threads for all sessions of a process, and takes them for its own in one that was forked.
+fn refuse_fork() -> Result<(), BusError> {
+    static OPENED_BY: AtomicU32 = AtomicU32::new(0);
+    let process = std::process::id();
+    match OPENED_BY.compare_exchange(0, process, Relaxed, Relaxed) {
+        Err(other) if other != process => Err(BusError::Forked),
+        _ => Ok(()),
+    }
 }
 
 fn refuse_twin(session: &Session, keys: &Keys, advice: Advice) -> Result<(), BusError> {

@@ -50,6 +50,9 @@ pub(super) fn configure(options: &ServeOptions) -> Result<Wanted, BusError> {
     }
     let mut connect = of_file("connect/endpoints");
     connect.extend(options.connect.iter().cloned());
+    for endpoint in &connect {
+        endpoints::check_form(endpoint)?;
+    }
     let mode = config.get_json("mode").ok();
     let mode: Option<String> = mode
         .and_then(|mode| serde_json::from_str(&mode).ok())
