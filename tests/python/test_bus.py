@@ -619,18 +619,19 @@ def test_only_users_with_their_password_get_in_and_do_what_the_list_allows(tmp_p
             plc.put(f"{BASE}/in/{GATE}", "8")
             until(lambda: counted() == 1)
             assert Component(guest, "small_silo").ask("status")["refused_set_points"] == 1
-            # Who watches sends nothing in the component's name: what it put came before the answer to what it asks then.
+            # Who watches sends nothing in a component's name: what it put came before the answer to what it asks then.
+            ghost = "sandgate/v1/ghost"
             seen = []
             listener = plc.declare_subscriber(f"{BASE}/out/**", seen.append)
             Component(plc, "small_silo").ask("status")
             guest.put(f"{BASE}/out/gauge/forged", "1")
-            token = guest.liveliness().declare_token(f"{BASE}/@alive/forged")
-            answers = guest.declare_queryable(f"{BASE}/@rpc/forged", lambda query: query.reply(query.key_expr, "1"))
+            token = guest.liveliness().declare_token(f"{ghost}/@alive")
+            answers = guest.declare_queryable(f"{ghost}/@rpc/status", lambda query: query.reply(query.key_expr, "1"))
             Component(guest, "small_silo").ask("status")
             Component(plc, "small_silo").ask("status")
             assert not any("forged" in str(sample.key_expr) for sample in seen)
-            assert not list(plc.liveliness().get(f"{BASE}/@alive/forged", timeout=1.0))
-            assert not list(plc.get(f"{BASE}/@rpc/forged", timeout=1.0))
+            assert not list(plc.liveliness().get(f"{ghost}/@alive", timeout=1.0))
+            assert not any(reply.ok for reply in plc.get(f"{ghost}/@rpc/status", timeout=1.0))
             for declared in (listener, token, answers):
                 declared.undeclare()
     finally:
