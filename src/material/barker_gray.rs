@@ -7,6 +7,7 @@
 //! Any alpha < 2 is well-posed at low I. The price: mu(0) = 0. There is no yield stress, and material creeps under any load,
 //! little where mu_s is small (glass: mu(1e-3) = 0.357 for mu_s = 0.382), much where it is large (sand of 0.4 mm: 0.433 for 0.589).
 
+use super::law::gauss;
 use super::{Friction, MuI, neutral_inertial_numbers};
 
 /// alpha of the low branch [1], below 2.
@@ -133,6 +134,20 @@ impl Friction for BarkerGray {
         } else {
             self.low_inertial_number(m)
         }
+    }
+
+    /// s mu' = mu^3/(2 alpha) on the low branch.
+    fn rate_integral(&self, lower: f64, upper: f64) -> f64 {
+        let low = |s: f64| self.friction(s).powi(3) / (2.0 * ALPHA);
+        let (joint, middle) = (upper.min(self.i1), 0.1 * upper.min(self.i1));
+        let mut sum = 0.0;
+        if lower < joint {
+            sum += gauss(lower, lower.max(middle), low) + gauss(lower.max(middle), joint, low);
+        }
+        if upper > self.i1 {
+            sum += self.high.rate_integral(lower.max(self.i1), upper);
+        }
+        sum
     }
 }
 

@@ -13,7 +13,7 @@
 //!
 //! The associated match 3 tan phi/sqrt(9 + 12 tan^2 phi) is for material that dilates as it shears: not used here.
 
-use super::Friction;
+use super::{Friction, Viscous};
 
 /// How a Mohr-Coulomb angle becomes a friction coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,6 +82,10 @@ impl Friction for ConstantFriction {
     #[inline]
     fn resolvent(&self, a: f64, y: f64) -> f64 {
         (y - self.mu).max(0.0) / a
+    }
+
+    fn cell_resolvent(&self, (a, k): (f64, f64), y: f64, half: f64) -> f64 {
+        Viscous::newtonian(k).mean_resolvent(y - self.mu, a, half)
     }
 }
 

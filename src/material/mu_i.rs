@@ -5,6 +5,7 @@
 //! - growth at large I: + mu_inf I^2/(I0 + I), so that friction rises like mu_inf I (Barker & Gray 2017, eq. 6.3).
 
 use super::Friction;
+use super::law::gauss;
 
 /// s H/d of (A.18) for sand: 5 gamma/(2 sqrt(phi cos theta)) with gamma = 0.77 of [A] Table 1, phi = 0.6 and
 /// theta = 25 deg. Glass beads have gamma = 0: no correction.
@@ -97,6 +98,21 @@ impl Friction for MuI {
         } else {
             (root - b) / (2.0 * (a + self.mu_inf))
         }
+    }
+
+    /// mu_inf s^2/2 + I0 (mu_2 - mu_s - mu_inf I0) (ln(s + I0) - s/(s + I0)), where that loses no digits.
+    fn rate_integral(&self, lower: f64, upper: f64) -> f64 {
+        let i0 = self.inertial_number_scale;
+        let (grown, saturating) = (
+            0.5 * self.mu_inf * (upper - lower) * (upper + lower),
+            i0 * (self.mu_2 - self.mu_s - self.mu_inf * i0),
+        );
+        let span = (upper - lower) / (lower + i0);
+        if upper < 0.1 * i0 {
+            let shape = |s: f64| s / (s + i0).powi(2);
+            return grown + saturating * gauss(lower, upper, shape);
+        }
+        grown + saturating * (span.ln_1p() - span * i0 / (upper + i0))
     }
 }
 

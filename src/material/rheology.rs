@@ -15,6 +15,8 @@ pub trait Rheology {
     /// Resolvent of the yield step: the shear rate q >= 0 with tau(q, p) + r q = x, r > 0 [Pa s] (0 if x is under the
     /// yield stress) [1/s].
     fn resolvent(&self, x: f64, r: f64, p: f64, correction: f64) -> f64;
+    /// The same of a cell through which stress changes evenly from tau - half to tau + half at the mean rate q, half > 0 [Pa].
+    fn cell_resolvent(&self, x: f64, r: f64, p: f64, correction: f64, half: f64) -> f64;
 }
 
 /// Shear rates below this count as none [1/s]: far below any that matters, far above rounding.
@@ -56,6 +58,27 @@ impl Rheology for Material {
         debug_assert!(self.viscous.is_linear(), "mu(I) and a power law at once");
         let r = r + self.viscous.consistency;
         self.law.resolvent(r / (time * p), (x - self.cohesion) / p) / time
+    }
+
+    #[inline]
+    fn cell_resolvent(&self, x: f64, r: f64, p: f64, correction: f64, half: f64) -> f64 {
+        let excess = x - self.yield_stress(p);
+        if self.is_fluid() {
+            return self.viscous.mean_resolvent(excess, r, half);
+        }
+        if p <= 0.0 {
+            return self.resolvent(x, r, p, correction);
+        }
+        let time = correction * self.grains.inertial_time(p);
+        if time <= 0.0 {
+            return self.viscous.mean_resolvent(excess, r, half);
+        }
+        debug_assert!(self.viscous.is_linear(), "mu(I) and a power law at once");
+        let of_number = |r: f64| r / (time * p);
+        let a = (of_number(r), of_number(self.viscous.consistency));
+        self.law
+            .cell_resolvent(a, (x - self.cohesion) / p, half / p)
+            / time
     }
 }
 
@@ -180,6 +203,32 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_small_cell_is_a_point_and_a_large_one_yields_where_its_edge_does() {
+        for m in materials() {
+            let p = 500.0;
+            let strength = m.strength(p);
+            if strength == 0.0 {
+                continue;
+            }
+            for x in [1.2, 2.0] {
+                let x = x * strength;
+                let point = m.resolvent(x, 10.0, p, 1.1);
+                let cell = m.cell_resolvent(x, 10.0, p, 1.1, 1e-5 * strength);
+                assert!(
+                    (cell - point).abs() <= 1e-4 * point,
+                    "{m:?}: {cell}, {point}"
+                );
+            }
+            let half = 0.3 * strength;
+            let cell =
+                |over: f64| m.cell_resolvent(m.yield_stress(p) - half + over, 10.0, p, 1.1, half);
+            assert_eq!(cell(-1e-6 * strength), 0.0);
+            // Barker and Gray's friction is nothing to speak of below a third of its static one.
+            assert!(cell(0.5 * strength) > 0.0, "{m:?}");
         }
     }
 

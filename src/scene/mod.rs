@@ -175,9 +175,21 @@ impl Scene {
     /// Whether a wall or gate has Coulomb friction.
     #[must_use]
     pub fn has_wall_friction(&self) -> bool {
+        self.slips().any(|s| s.friction() > 0.0)
+    }
+
+    /// Whether grains' friction goes on into walls (docs/theory.md, W11): the exact yield, a wall or gate without slip, and neither fluids nor
+    /// full pores, with which the pressure between grains is not all of it.
+    #[must_use]
+    pub fn friction_goes_on(&self) -> bool {
+        let dry = |m: &crate::material::Material| !m.is_fluid() && !m.is_saturated();
+        self.numerics.keeps_stress()
+            && self.materials.iter().all(|m| dry(&m.material))
+            && self.slips().any(|s| s == Slip::NoSlip)
+    }
+
+    fn slips(&self) -> impl Iterator<Item = Slip> {
         let slips = self.walls.iter().map(|w| w.slip);
-        slips
-            .chain(self.gates.iter().map(|g| g.slip))
-            .any(|s| s.friction() > 0.0)
+        slips.chain(self.gates.iter().map(|g| g.slip))
     }
 }

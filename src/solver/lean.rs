@@ -13,7 +13,7 @@
 //! a wall gets is that of about 0.7 dp inside, and rows there shear too fast: by 5 % of the stress at 20 rows, which is a
 //! fourth of a yield stress fluid's rate. The wall gets m K (a* - a) beside -F, so that momentum balances.
 //!
-//! Where nothing slips along a wall only; fluids only: in sand friction would gain and pressure would not.
+//! Where nothing slips along a wall only, and for fluids: in sand friction would gain and pressure would not (`wall_ratio`).
 //!
 //! Of a slope of pressure the first row's neighbours show it 0.65 along a wall and 0.5 across it, and points with its own pressure
 //! nothing. Along walls its weight was borne by as much: the row beside the wall of a tank at rest fell at a fourth of g, the water
@@ -61,9 +61,9 @@ pub(super) struct Slope<const D: usize> {
 }
 
 impl<const D: usize> Solver<D> {
-    /// Gathers K of every particle after a sweep; nothing in scenes without fluids.
+    /// Gathers K of every particle after a sweep; nothing in scenes where neither fluids nor friction go on into walls.
     pub(super) fn note_lean(&mut self, state: &State<D>) {
-        if !self.has_fluids {
+        if !self.has_fluids && !self.friction_goes_on {
             return;
         }
         self.lean.clear();
@@ -178,8 +178,26 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// m (v - v*) [N s], times what of K was kept: what each wall point's part of K makes an impulse of.
-    pub(super) fn leant(&self, state: &State<D>, i: usize, whole: &Tensor<D>) -> Vector<D> {
+    /// m (I - K) (v* - v) - m K b dt: what a step has to bring a particle from v to v*, b of (W11).
+    #[inline(always)]
+    pub(super) fn inertia_to(&self, mass: f64, i: usize, change: &Vector<D>, dt: f64) -> Vector<D> {
+        let inertia = self.inertia(mass, i, change);
+        match self.even_friction.get(i) {
+            None => inertia,
+            Some(b) => {
+                let even = apply(&self.lean[i], b);
+                std::array::from_fn(|c| inertia[c] - mass * dt * even[c])
+            }
+        }
+    }
+
+    /// m (v - v* - b dt) [N s], times what of K was kept: what each wall point's part of K makes an impulse of.
+    pub(super) fn leant(
+        &self,
+        state: &State<D>,
+        (i, whole): (usize, &Tensor<D>),
+        dt: f64,
+    ) -> Vector<D> {
         let Some(k) = self.lean.get(i) else {
             return [0.0; D];
         };
@@ -189,7 +207,9 @@ impl<const D: usize> Solver<D> {
             0.0
         };
         let m = kept * state.grains.mass[i];
-        std::array::from_fn(|a| m * (self.viscous.velocity[i][a] - self.prediction[i].velocity[a]))
+        let b = self.even_friction.get(i).copied().unwrap_or([0.0; D]);
+        let (v, aim) = (&self.viscous.velocity[i], &self.prediction[i].velocity);
+        std::array::from_fn(|a| m * (v[a] - aim[a] - dt * b[a]))
     }
 }
 

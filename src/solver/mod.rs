@@ -78,6 +78,7 @@ mod wall_contact;
 mod wall_faces;
 mod wall_friction;
 mod wall_geometry;
+mod wall_ratio;
 mod wall_row;
 mod wall_yield;
 
@@ -182,8 +183,12 @@ pub struct Solver<const D: usize> {
     flows: Vec<f64>,
     /// Share of the viscosity made up to each particle's own that it feels (E21) [1]; empty where none is made up.
     damped: Vec<f64>,
-    /// Part of each particle's momentum that walls are given; empty in scenes without fluids.
+    /// Whether grains' friction goes on into walls (W11).
+    friction_goes_on: bool,
+    /// Part of each particle's momentum that walls are given; empty in scenes where neither fluids nor friction go on into walls.
     lean: Vec<Tensor<D>>,
+    /// b of (W11) of each particle [m/s^2]; empty where friction does not go on into walls.
+    even_friction: Vec<Vector<D>>,
     /// For each material whether (F3) is for it; where it is for none, this and what follows stay empty.
     slides: Vec<bool>,
     /// T of each particle: how unevenly its neighbours lie [1].
@@ -194,7 +199,7 @@ pub struct Solver<const D: usize> {
     turns: Vec<bool>,
     /// M of each particle that it is for, 0 of others [1].
     turning: Vec<Tensor<D>>,
-    /// Stress that each particle's strain against walls without slip lacks (W8) [Pa]; empty in scenes without fluids that yield.
+    /// Stress that each particle's strain against walls without slip lacks (W8) [Pa]; empty in scenes where nothing that yields has (W4) or (W11).
     wall_share: Vec<f64>,
     /// Id and div v [1/s] at the start of the step of fluid particles without neighbours, by id; else empty.
     lone: Vec<(u64, f64)>,

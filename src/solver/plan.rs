@@ -22,6 +22,8 @@ pub struct Plan<const D: usize> {
     pub lower: Vector<D>,
     /// Upper corner of the domain [m].
     pub upper: Vector<D>,
+    /// Whether grains' friction goes on into walls (docs/theory.md, W11).
+    pub friction_goes_on: bool,
     /// Periodic axes.
     pub periodic: Periodic<D>,
     /// Materials by phase.

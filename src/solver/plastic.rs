@@ -141,13 +141,12 @@ impl<const D: usize> Solver<D> {
         }
         let size = self.geometry.size(x);
         let correction = self.kinematics[i].correction;
+        let half = self.wall_share.get(i).map_or(0.0, |share| *share);
         let q = if material.is_fluid() {
             // Phi(R |q|): R tau(R q) + r q = |x|.
             let (x, r) = (size / correction, r / (correction * correction));
-            let half = self.wall_share.get(i).map_or(0.0, |share| *share);
             let rate = if half > 0.0 {
-                let over = x - material.cohesion;
-                material.viscous.mean_resolvent(over, r, half)
+                material.cell_resolvent(x, r, p, 1.0, half)
             } else {
                 material.resolvent(x, r, p, 1.0)
             };
@@ -155,7 +154,11 @@ impl<const D: usize> Solver<D> {
         } else {
             let summed = material.as_summed(correction);
             let law = summed.as_ref().unwrap_or(material);
-            law.resolvent(size, r, p, correction)
+            if half > 0.0 {
+                law.cell_resolvent(size, r, p, correction, half)
+            } else {
+                law.resolvent(size, r, p, correction)
+            }
         };
         if q <= 0.0 {
             return (*x, zero);

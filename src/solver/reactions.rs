@@ -144,7 +144,7 @@ impl<const D: usize> Solver<D> {
             let share = dt * w.barrier * state.grains.mass[i] / size2;
             (scale(share, &w.grip), w.push)
         });
-        let leant = seen.map_or([0.0; D], |w| self.leant(state, i, &w.lean));
+        let leant = seen.map_or([0.0; D], |w| self.leant(state, (i, &w.lean), dt));
         Pushing {
             i,
             seen,
@@ -252,7 +252,7 @@ impl<const D: usize> Solver<D> {
         add(&stress, &scale(drag, &pg))
     }
 
-    /// Impulse on the particle of what is not a stress: each point's part of K (W4), as the solve has it, and of L (W7, W10) and of (W5), as they were counted.
+    /// Impulse on the particle of what is not a stress: each point's part of K (W4, W11), as the solve has it, and of L (W7, W10) and of (W5), as they were counted.
     fn other_push(
         &self,
         state: &State<D>,
@@ -269,7 +269,7 @@ impl<const D: usize> Solver<D> {
         let xi = &state.grains.position[i];
         let weight = self.walls.weight[w as usize];
         let vf = self.wall_volume(i, w, weight) * self.kernel.f(r);
-        if self.has_fluids && self.wall_projection(xi, w, state).is_none() {
+        if pushing.leant != [0.0; D] && self.wall_projection(xi, w, state).is_none() {
             let n = self.wall_normal(xi, w, state);
             leant = scale(-vf * dot(&n, x).powi(2), &along(&n, &pushing.leant));
         }

@@ -27,6 +27,8 @@ struct Particle<'s, const D: usize> {
     x: &'s Vector<D>,
     v: &'s Vector<D>,
     is_fluid: bool,
+    /// Whether its shear stress goes on into walls (W4, W11).
+    leans: bool,
     /// Whether a fluid's pressure goes on in it, or presses on it beside it or where there are pores.
     holds_fluid: bool,
     bears_fluid: bool,
@@ -45,7 +47,7 @@ struct Seen<'s, const D: usize> {
     g: Vector<D>,
     /// v_w.
     velocity: Vector<D>,
-    /// Of the face, as far as it is needed: 0 where neither slip nor fluid asks for it.
+    /// Of the face, as far as it is needed: 0 where neither slip nor (W4) asks for it.
     normal: Vector<D>,
     /// The bend of a face with free slip that it lies in.
     bend: Option<Bend<D>>,
@@ -72,6 +74,7 @@ impl<const D: usize> Solver<D> {
             x: &grains.position[i],
             v: &grains.velocity[i],
             is_fluid,
+            leans: is_fluid || self.friction_goes_on,
             holds_fluid: material.holds_fluid(),
             bears_fluid: meets_fluid || self.has_pores,
         };
@@ -143,7 +146,7 @@ impl<const D: usize> Solver<D> {
         })
     }
 
-    /// Normal of the face that a wall point belongs to, as far as the particle needs it: 0 where neither slip nor fluid asks for it.
+    /// Normal of the face that a wall point belongs to, as far as the particle needs it: 0 where neither slip nor (W4) asks for it.
     /// `last` is the face of the point before: one gate has one normal for all its points.
     #[inline(always)]
     fn face_normal(
@@ -154,7 +157,7 @@ impl<const D: usize> Solver<D> {
         state: &State<D>,
     ) -> Vector<D> {
         let group = self.walls.group[wall as usize];
-        if !own.is_fluid && !self.walls.groups[group as usize].free_slip {
+        if !own.leans && !self.walls.groups[group as usize].free_slip {
             return [0.0; D];
         }
         match last {
@@ -177,7 +180,7 @@ impl<const D: usize> Solver<D> {
         if face.free_slip {
             face.add_length(self.ring_part(own.i, point.wall), g);
         }
-        if own.is_fluid && !face.free_slip {
+        if own.leans && !face.free_slip {
             face.lean -= point.vf * dot(&point.normal, x).powi(2);
         }
         if own.holds_fluid {

@@ -1,4 +1,4 @@
-//! Fluids with a yield stress beside walls without slip: where the wall yields them (docs/theory.md, W8).
+//! What has a yield stress beside walls without slip: where the wall yields them (docs/theory.md, W8).
 //!
 //! Near its yield a fluid slides over a wall in a layer thinner than a spacing, at the stress of the wall. Here the strain that a wall
 //! without slip makes is that of rows at half a spacing from it and more, 2 |S| u of a row at the speed u, and works on their stress;
@@ -13,23 +13,26 @@
 //! and not before, and fast flow, where all of the cell yields, is what it was but for D^2.
 //!
 //! a - a* is that of the last step. Exact yield only.
+//!
+//! Of dry grains what the wall's stress is more is rho |K (a - a* - b)|, b of (W11), and such a row yields at the mean of the rates of
+//! its law from (tau - D)/p to (tau + D)/p. D has no sign, and waves of pressure add to it.
 
-use crate::math::{apply, norm, trace};
+use crate::math::{apply, norm, sub, trace};
 use crate::state::State;
 
 use super::{Solver, YieldForm};
 
-/// Most of the yield stress that D is [1].
+/// Most of the strength (the yield stress, of grains c + mu_s p) that D is [1].
 const MOST: f64 = 0.5;
 
 /// Less of it is none [1]: it would change the rate by its square.
 const LEAST: f64 = 1e-3;
 
 impl<const D: usize> Solver<D> {
-    /// D of every particle; nothing in scenes without fluids that yield.
+    /// D of every particle; nothing in scenes where nothing that yields has (W4) or (W11).
     pub(super) fn find_wall_share(&mut self, state: &State<D>) {
         let yields = self.materials.iter().any(|m| m.is_fluid() && !m.flows());
-        if !yields || self.numerics.yield_form == YieldForm::Capped {
+        if !(yields || self.friction_goes_on) || self.numerics.yield_form == YieldForm::Capped {
             return;
         }
         let grains = &state.grains;
@@ -42,13 +45,16 @@ impl<const D: usize> Solver<D> {
                     let i = first + w.row as usize;
                     let material = &self.materials[grains.phase[i] as usize];
                     let side = norm(&w.s);
-                    if !material.is_fluid() || trace(&w.lean) == 0.0 || side == 0.0 {
+                    if trace(&w.lean) == 0.0 || side == 0.0 {
                         continue;
                     }
-                    let handed = norm(&apply(&self.lean[i], &grains.viscous_acceleration[i]));
+                    let a = &grains.viscous_acceleration[i];
+                    let uneven = self.even_friction.get(i).map_or(*a, |b| sub(a, b));
+                    let handed = norm(&apply(&self.lean[i], &uneven));
                     let share = handed / (2.0 * side * self.specific_volume(state, i));
-                    let share = share.min(MOST * material.cohesion);
-                    if share > LEAST * material.cohesion {
+                    let strength = material.strength(self.yield_pressure(i));
+                    let share = share.min(MOST * strength);
+                    if share > LEAST * strength {
                         out[w.row as usize] = share;
                     }
                 }

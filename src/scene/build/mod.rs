@@ -91,6 +91,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         numerics: scene.numerics.clone(),
         gravity: narrow(&scene.domain.gravity),
         geometry: geometry(scene),
+        friction_goes_on: scene.friction_goes_on(),
         lower: narrow(&scene.domain.lower),
         upper: narrow(&scene.domain.upper),
         periodic,

@@ -125,7 +125,7 @@ impl<const D: usize> Solver<D> {
         })
     }
 
-    /// residual = M (v* - v) + dt F(v), walls moving; returns its square.
+    /// residual = M (v* - v) + dt F(v), walls moving, with what friction at an even ratio makes of M (W11); returns its square.
     fn first_residual(&self, state: &State<D>, dt: f64, work: &mut Viscous<D>) -> f64 {
         let Viscous {
             current,
@@ -148,7 +148,7 @@ impl<const D: usize> Solver<D> {
         let mass = &state.grains.mass;
         let norm2 = self.force(start, residual, true, &[], |i, f| {
             let (aim, v) = (&self.prediction[i].velocity, start[i].velocity::<D>());
-            let change = self.inertia(mass[i], i, &sub(aim, &v));
+            let change = self.inertia_to(mass[i], i, &sub(aim, &v), dt);
             let r: Vector<D> = std::array::from_fn(|k| change[k] + dt * f[k]);
             (r, dot(&r, &r))
         });
