@@ -1,8 +1,8 @@
 //! What `status` answers: a copy of the component's figures, taken between steps, so that it can be given at any time,
 //! and the counters of what the bus had to refuse or drop.
 
-use super::json::number;
 use crate::component::{Component, MassLedger, Mode, Statistics};
+use crate::wire::json::number;
 use serde_json::{Map, Value, json};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -2,13 +2,13 @@
 //! table's rows.
 
 use super::fields::Given;
-use super::json::number;
 use super::refusal::{Code, Refusal};
 use super::set_point::SetPoint;
 use crate::component::{
     self, Causality, Component, Start, ValueKind, ValueReference, Variability, Variable,
     VariableTable,
 };
+use crate::wire::json::number;
 use serde_json::{Map, Value, json};
 use std::collections::HashMap;
 

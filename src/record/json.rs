@@ -6,6 +6,7 @@
 
 use super::raw::Schema;
 use crate::units::hex;
+use crate::wire::json::number;
 use prost::Message;
 use prost::encoding::{DecodeContext, WireType, decode_key, decode_varint, skip_field};
 use prost_types::field_descriptor_proto::{Label, Type};
@@ -210,12 +211,6 @@ fn short() -> String {
     "the message ends within a field".to_owned()
 }
 
-/// A number; JSON has none for NaN and infinities, which are text (replies of the bus spell them as docs/zenoh.md says).
-#[must_use]
-pub fn number(value: f64) -> Value {
-    serde_json::Number::from_f64(value).map_or_else(|| format!("{value}").into(), Value::Number)
-}
-
 /// `data` of a cloud as `points`: a row of numbers each, in the order of `fields`.
 fn rows_of_points(value: &mut Map<String, Value>, data: &[u8]) -> Result<(), String> {
     let cloud = crate::wire::foxglove::PointCloud::decode(data).map_err(|e| e.to_string())?;
@@ -265,7 +260,7 @@ mod tests {
             read(&gauge),
             json!({
                 "timestamp": {"seconds": 1, "nanos": -5}, "time": 1.25, "step": u64::MAX, "sequence": 0,
-                "name": "gauge.level.depth", "unit": "", "values": [0.1, "NaN", "-inf"], "validity": "BLOCKED",
+                "name": "gauge.level.depth", "unit": "", "values": [0.1, "NaN", "-Infinity"], "validity": "BLOCKED",
             })
         );
         let applied = Applied {

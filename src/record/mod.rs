@@ -34,7 +34,7 @@ mod write;
 
 pub use ending::Ending;
 pub use error::{Failure, ReadError, RecordError};
-pub use json::{JsonReader, number};
+pub use json::JsonReader;
 pub use mass::{MassCheck, WrongLine, check_mass};
 pub use options::{Finished, RecordOptions};
 pub use raw::{RawChannel, RawEntry, RawMessage, RawReader, Schema};

@@ -8,6 +8,7 @@
 mod describe;
 pub mod convert;
 pub mod foxglove;
+pub mod json;
 pub mod keys;
 pub mod messages;
 mod observer;

@@ -7,6 +7,7 @@
 mod beside;
 mod closing;
 mod desk;
+mod named_files;
 mod outlet;
 mod press;
 mod replies;

@@ -1,7 +1,7 @@
 //! What is wanted of a session: Zenoh's configuration with scouting, gossip and the admin space off, and in which role, where
 //! it listens and whom it joins. Opens nothing.
 
-use super::{ServeOptions, ZenohConfig};
+use super::{ServeOptions, ZenohConfig, named_files};
 use crate::bus::advice::Advice;
 use crate::bus::endpoints;
 use crate::bus::error::{BusError, words};
@@ -53,6 +53,7 @@ pub(super) fn configure(options: &ServeOptions) -> Result<Wanted, BusError> {
     for endpoint in &connect {
         endpoints::check_form(endpoint)?;
     }
+    named_files::check(&config, &listen)?;
     let mode = config.get_json("mode").ok();
     let mode: Option<String> = mode
         .and_then(|mode| serde_json::from_str(&mode).ok())

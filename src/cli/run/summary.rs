@@ -7,9 +7,9 @@ use super::notes::notes;
 use super::session::Session;
 use crate::cli::CliError;
 use crate::component::{Causality, ValueKind, ValueReference};
-use crate::record::number;
 use crate::solver::StepBound;
 use crate::units::hex;
+use crate::wire::json::number;
 
 /// Name of a step bound in files and tables.
 pub(in crate::cli) fn bound_name(bound: StepBound) -> &'static str {
