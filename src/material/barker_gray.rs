@@ -58,7 +58,7 @@ impl BarkerGray {
     /// ln(a A) - alpha/m^2 - ln(y - m), kept in a bracket.
     fn low_friction(&self, a: f64, y: f64) -> f64 {
         let scale = (a * self.a).ln();
-        if a * self.low_inertial_number(y) <= 1e-17 * y {
+        if a <= 0.0 || a * self.low_inertial_number(y) <= 1e-17 * y {
             return y;
         }
         let (mut low, mut high) = (0.0, y);
@@ -132,7 +132,8 @@ impl Friction for BarkerGray {
         if y - m > m {
             (y - m) / a
         } else {
-            self.low_inertial_number(m)
+            // Where A is too large for a number all of the branch is at 0, and steps up at its end.
+            self.low_inertial_number(m).min(self.i1)
         }
     }
 

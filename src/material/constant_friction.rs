@@ -81,7 +81,8 @@ impl Friction for ConstantFriction {
 
     #[inline]
     fn resolvent(&self, a: f64, y: f64) -> f64 {
-        (y - self.mu).max(0.0) / a
+        let excess = y - self.mu;
+        if excess > 0.0 { excess / a } else { 0.0 }
     }
 
     fn cell_resolvent(&self, (a, k): (f64, f64), y: f64, half: f64) -> f64 {

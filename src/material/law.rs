@@ -40,13 +40,16 @@ pub trait Friction {
             let viscous = 0.5 * k * (i - lower) * (i + lower);
             mean = (self.rate_integral(lower, i) + viscous) / (2.0 * half);
             let f = t + a * mean - y;
-            if f < 0.0 && i > FAR * least {
+            let slope = self.slope(i) + k;
+            if f < 0.0 && i > FAR * least && slope * i < LEVEL * half {
                 // Its end is at the law's largest friction.
                 return (y - t) / a;
             }
             *(if f < 0.0 { &mut low } else { &mut high }) = i;
-            let slope = (self.slope(i) + k) * (1.0 + a * (i - lower) / (2.0 * half));
-            let mut next = i - f / slope;
+            let mut next = i - f / (slope * (1.0 + a * (i - lower) / (2.0 * half)));
+            if (next - i).abs() <= 1e-10 * i {
+                break;
+            }
             if !(next > low && next < high) {
                 next = if high.is_finite() {
                     0.5 * (low + high)
@@ -54,20 +57,20 @@ pub trait Friction {
                     10.0 * i
                 };
             }
-            if (next - i).abs() <= 1e-10 * i {
-                break;
-            }
             i = next;
         }
-        mean
+        // Where a law jumps there may be no such i.
+        mean.min((y + half) / a)
     }
 }
 
-/// Newton's steps from below; 4 to 8 are usual.
+/// Newton converges quadratically; 4 to 8 steps are usual.
 const MOST_STEPS: u32 = 60;
 
-/// Inertial number at the end of a cell, over what is less than it, from which on it is as good as infinite [1].
+/// Inertial number at the end of a cell, over what is less than it, and what friction may still grow by there, over half of the cell, from
+/// which on the number is as good as infinite [1].
 const FAR: f64 = 1e6;
+const LEVEL: f64 = 1e-6;
 
 /// Integral by Gauss's five points.
 pub(super) fn gauss(lower: f64, upper: f64, of: impl Fn(f64) -> f64) -> f64 {

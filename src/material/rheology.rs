@@ -66,10 +66,11 @@ impl Rheology for Material {
         if self.is_fluid() {
             return self.viscous.mean_resolvent(excess, r, half);
         }
-        if p <= 0.0 {
-            return self.resolvent(x, r, p, correction);
-        }
-        let time = correction * self.grains.inertial_time(p);
+        let time = if p > 0.0 {
+            correction * self.grains.inertial_time(p)
+        } else {
+            0.0
+        };
         if time <= 0.0 {
             return self.viscous.mean_resolvent(excess, r, half);
         }

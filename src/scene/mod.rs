@@ -178,12 +178,13 @@ impl Scene {
         self.slips().any(|s| s.friction() > 0.0)
     }
 
-    /// Whether grains' friction goes on into walls (docs/theory.md, W11): the exact yield, a wall or gate without slip, and neither fluids nor
+    /// Whether grains' friction goes on into walls (docs/theory.md, W14): asked for, the exact yield, a wall or gate without slip, and neither fluids nor
     /// full pores, with which the pressure between grains is not all of it.
     #[must_use]
     pub fn friction_goes_on(&self) -> bool {
         let dry = |m: &crate::material::Material| !m.is_fluid() && !m.is_saturated();
-        self.numerics.keeps_stress()
+        self.numerics.friction_into_walls
+            && self.numerics.keeps_stress()
             && self.materials.iter().all(|m| dry(&m.material))
             && self.slips().any(|s| s == Slip::NoSlip)
     }

@@ -9,7 +9,7 @@ use super::bend::Bend;
 /// Sums over the points of one face, those of one wall with one normal, as one particle sees them.
 pub(super) struct FaceSums<const D: usize> {
     pub(super) group: u16,
-    /// Unit normal towards the material; 0 where neither slip nor fluid asks for it.
+    /// Unit normal towards the material; 0 where neither slip nor (W4) asks for it.
     pub(super) normal: Vector<D>,
     pub(super) free_slip: bool,
     /// Where it is a bend with free slip.
@@ -30,7 +30,7 @@ pub(super) struct FaceSums<const D: usize> {
     pub(super) pair: Tensor<D>,
     /// sum c (P g)(P g)^T v_w.
     pub(super) dragged: Vector<D>,
-    /// sum |F| V (n.x)^2 of fluids without slip; else 0.
+    /// sum |F| V (n.x)^2 without slip, of what (W4) and (W14) are for; else 0.
     pub(super) lean: f64,
     /// sum |F| V x x^T of fluids and of grains with full pores, of x along the face of dry grains that bear a fluid (W7, W10); else 0.
     pub(super) moment: Tensor<D>,

@@ -99,7 +99,7 @@ impl<const D: usize> Solver<D> {
         dt: f64,
     ) -> Result<u32, SolverError> {
         self.find_friction(state, dt);
-        self.find_even_friction(state, dt);
+        self.find_even_slope(state, dt);
         self.find_wall_share(state);
         let mut work = std::mem::take(&mut self.viscous);
         work.resize(state.grains.len());

@@ -178,11 +178,11 @@ impl<const D: usize> Solver<D> {
         }
     }
 
-    /// m (I - K) (v* - v) - m K b dt: what a step has to bring a particle from v to v*, b of (W11).
+    /// m (I - K) (v* - v) - m K b dt: what a step has to bring a particle from v to v*, b of (W14).
     #[inline(always)]
     pub(super) fn inertia_to(&self, mass: f64, i: usize, change: &Vector<D>, dt: f64) -> Vector<D> {
         let inertia = self.inertia(mass, i, change);
-        match self.even_friction.get(i) {
+        match self.even_slope.get(i) {
             None => inertia,
             Some(b) => {
                 let even = apply(&self.lean[i], b);
@@ -207,7 +207,7 @@ impl<const D: usize> Solver<D> {
             0.0
         };
         let m = kept * state.grains.mass[i];
-        let b = self.even_friction.get(i).copied().unwrap_or([0.0; D]);
+        let b = self.even_slope.get(i).copied().unwrap_or([0.0; D]);
         let (v, aim) = (&self.viscous.velocity[i], &self.prediction[i].velocity);
         std::array::from_fn(|a| m * (v[a] - aim[a] - dt * b[a]))
     }

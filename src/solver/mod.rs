@@ -183,12 +183,12 @@ pub struct Solver<const D: usize> {
     flows: Vec<f64>,
     /// Share of the viscosity made up to each particle's own that it feels (E21) [1]; empty where none is made up.
     damped: Vec<f64>,
-    /// Whether grains' friction goes on into walls (W11).
+    /// Whether grains' friction goes on into walls (W14).
     friction_goes_on: bool,
     /// Part of each particle's momentum that walls are given; empty in scenes where neither fluids nor friction go on into walls.
     lean: Vec<Tensor<D>>,
-    /// b of (W11) of each particle [m/s^2]; empty where friction does not go on into walls.
-    even_friction: Vec<Vector<D>>,
+    /// b of (W14) of each particle [m/s^2]; empty where friction does not go on into walls.
+    even_slope: Vec<Vector<D>>,
     /// For each material whether (F3) is for it; where it is for none, this and what follows stay empty.
     slides: Vec<bool>,
     /// T of each particle: how unevenly its neighbours lie [1].
@@ -199,7 +199,7 @@ pub struct Solver<const D: usize> {
     turns: Vec<bool>,
     /// M of each particle that it is for, 0 of others [1].
     turning: Vec<Tensor<D>>,
-    /// Stress that each particle's strain against walls without slip lacks (W8) [Pa]; empty in scenes where nothing that yields has (W4) or (W11).
+    /// Stress that each particle's strain against walls without slip lacks (W8) [Pa]; empty in scenes where nothing that yields has (W4) or (W14).
     wall_share: Vec<f64>,
     /// Id and div v [1/s] at the start of the step of fluid particles without neighbours, by id; else empty.
     lone: Vec<(u64, f64)>,

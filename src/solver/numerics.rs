@@ -69,6 +69,8 @@ pub struct Numerics {
     pub density_diffusion: f64,
     /// Time scale T_d that gates diffusion at rest: factor min(1, T_d gamma) [s].
     pub diffusion_gate_time: f64,
+    /// Whether dry grains' friction goes on into walls without slip (docs/theory.md, W14); default false.
+    pub friction_into_walls: bool,
     /// Relaxation time of the strain rate in the equation of state [s].
     pub strain_relaxation_time: f64,
     /// Share of the viscous stress carried by the pair operator against zero-energy modes [1]; default 0.05, 0.5 where all materials are Newtonian fluids.

@@ -34,9 +34,11 @@ pub(super) struct WallRow<const D: usize> {
     /// What rubs by that push, and the acceleration of it in this step [m/s^2].
     pub(super) rub: Rub<D>,
     pub(super) grip: Vector<D>,
-    /// Of fluids: sum (I - n n^T) |F| V (n.x)^2 over points without slip, how far their shear stress is carried on into walls
-    /// (docs/theory.md, W4); else 0.
+    /// Of what shear stress goes on into walls of: sum (I - n n^T) |F| V (n.x)^2 over points without slip, how far it is carried on
+    /// (docs/theory.md, W4, W14); else 0.
     pub(super) lean: Tensor<D>,
+    /// Of the same: sum over these faces of |sum g| [1/m].
+    pub(super) sticking: f64,
     /// What images take from it.
     pub(super) lean_less: Tensor<D>,
     /// L of (W7) before it is bounded: sum |F| V x x^T, the points' part of M, of fluids and of grains with full pores; of dry grains that

@@ -22,7 +22,7 @@ pub struct Plan<const D: usize> {
     pub lower: Vector<D>,
     /// Upper corner of the domain [m].
     pub upper: Vector<D>,
-    /// Whether grains' friction goes on into walls (docs/theory.md, W11).
+    /// Whether grains' friction goes on into walls (docs/theory.md, W14).
     pub friction_goes_on: bool,
     /// Periodic axes.
     pub periodic: Periodic<D>,

@@ -252,7 +252,7 @@ impl<const D: usize> Solver<D> {
         add(&stress, &scale(drag, &pg))
     }
 
-    /// Impulse on the particle of what is not a stress: each point's part of K (W4, W11), as the solve has it, and of L (W7, W10) and of (W5), as they were counted.
+    /// Impulse on the particle of what is not a stress: each point's part of K (W4, W14), as the solve has it, and of L (W7, W10) and of (W5), as they were counted.
     fn other_push(
         &self,
         state: &State<D>,

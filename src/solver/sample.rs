@@ -24,6 +24,7 @@ pub(super) fn numerics() -> Numerics {
         cap_time: 4.0,
         density_diffusion: 0.1,
         diffusion_gate_time: 1.0,
+        friction_into_walls: false,
         strain_relaxation_time: 0.05,
         pair_viscosity_share: 0.05,
         rotation: Rotation::Cohesive,

@@ -123,7 +123,7 @@ impl<const D: usize> Solver<D> {
             damped: Vec::new(),
             friction_goes_on: plan.friction_goes_on,
             lean: Vec::new(),
-            even_friction: Vec::new(),
+            even_slope: Vec::new(),
             wall_share: Vec::new(),
             lone: Vec::new(),
             slides: needs.slides,

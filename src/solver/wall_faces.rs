@@ -2,7 +2,7 @@
 //!
 //! Symbols as in `wall_row`.
 
-use crate::math::{Tensor, Vector, add_outer, apply, dot, scale, skew, trace};
+use crate::math::{Tensor, Vector, add_outer, apply, dot, norm, scale, skew, trace};
 
 use super::Solver;
 use super::bend::{Bend, Turning};
@@ -113,6 +113,7 @@ impl<'s, const D: usize> WallFaces<'s, D> {
         }
         let n = &face.normal;
         if face.lean > 0.0 {
+            w.sticking += norm(&face.s);
             for a in 0..D {
                 w.lean[a][a] += face.lean;
             }

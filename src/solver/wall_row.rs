@@ -27,7 +27,7 @@ struct Particle<'s, const D: usize> {
     x: &'s Vector<D>,
     v: &'s Vector<D>,
     is_fluid: bool,
-    /// Whether its shear stress goes on into walls (W4, W11).
+    /// Whether its shear stress goes on into walls (W4, W14).
     leans: bool,
     /// Whether a fluid's pressure goes on in it, or presses on it beside it or where there are pores.
     holds_fluid: bool,
@@ -256,6 +256,7 @@ impl<const D: usize> WallRow<D> {
             grip: [0.0; D],
             lean: [[0.0; D]; D],
             lean_less: [[0.0; D]; D],
+            sticking: 0.0,
             moment: [[0.0; D]; D],
             moment_drive: [0.0; D],
             carried: [0.0; D],

@@ -14,8 +14,10 @@
 //!
 //! a - a* is that of the last step. Exact yield only.
 //!
-//! Of dry grains what the wall's stress is more is rho |K (a - a* - b)|, b of (W11), and such a row yields at the mean of the rates of
-//! its law from (tau - D)/p to (tau + D)/p. D has no sign, and waves of pressure add to it.
+//! Of dry grains what the wall's stress is more is rho |K (a - a* - b)|, b of (W14), and such a row yields at the mean of the rates of
+//! its law from (tau - c - D)/p to (tau - c + D)/p. D has no sign, and waves of pressure add to it. Without images grains see walls from
+//! three rows, where K is 1e-3 and D, which goes as K over |S|, largest: it fades with K there. |S| is added up over faces, which between two
+//! walls would cancel.
 
 use crate::math::{apply, norm, sub, trace};
 use crate::state::State;
@@ -25,11 +27,14 @@ use super::{Solver, YieldForm};
 /// Most of the strength (the yield stress, of grains c + mu_s p) that D is [1].
 const MOST: f64 = 0.5;
 
+/// K/(D - 1) from which on D of grains is whole [1]: 0.5 in the first row and 0.19 in the second.
+const NEAR: f64 = 0.1;
+
 /// Less of it is none [1]: it would change the rate by its square.
 const LEAST: f64 = 1e-3;
 
 impl<const D: usize> Solver<D> {
-    /// D of every particle; nothing in scenes where nothing that yields has (W4) or (W11).
+    /// D of every particle; nothing in scenes where nothing that yields has (W4) or (W14).
     pub(super) fn find_wall_share(&mut self, state: &State<D>) {
         let yields = self.materials.iter().any(|m| m.is_fluid() && !m.flows());
         if !(yields || self.friction_goes_on) || self.numerics.yield_form == YieldForm::Capped {
@@ -44,16 +49,26 @@ impl<const D: usize> Solver<D> {
                 for w in &block.wall_rows {
                     let i = first + w.row as usize;
                     let material = &self.materials[grains.phase[i] as usize];
-                    let side = norm(&w.s);
-                    if trace(&w.lean) == 0.0 || side == 0.0 {
+                    let reach = trace(&w.lean);
+                    let side = if material.is_fluid() {
+                        norm(&w.s)
+                    } else {
+                        w.sticking
+                    };
+                    if reach == 0.0 || side == 0.0 {
                         continue;
                     }
                     let a = &grains.viscous_acceleration[i];
-                    let uneven = self.even_friction.get(i).map_or(*a, |b| sub(a, b));
+                    let uneven = self.even_slope.get(i).map_or(*a, |b| sub(a, b));
                     let handed = norm(&apply(&self.lean[i], &uneven));
                     let share = handed / (2.0 * side * self.specific_volume(state, i));
                     let strength = material.strength(self.yield_pressure(i));
-                    let share = share.min(MOST * strength);
+                    let near = if material.is_fluid() {
+                        1.0
+                    } else {
+                        (reach / ((D as f64 - 1.0) * NEAR)).min(1.0)
+                    };
+                    let share = near * share.min(MOST * strength);
                     if share > LEAST * strength {
                         out[w.row as usize] = share;
                     }

@@ -1,8 +1,8 @@
 //! Calls of an instance in its log: what was asked, as JSON, and what became of it.
 
 use sandgate::component::{Component, VariableTable};
-use sandgate::record::number;
 use sandgate::wire::foxglove::LogLevel;
+use sandgate::wire::json::number;
 use sandgate::wire::messages::{Command, CommandKind};
 use sandgate::wire::{Observer, convert};
 use serde_json::{Map, Value, json};

@@ -48,6 +48,7 @@ impl Lift<'_> {
                 Some(given) => given.value.0,
                 None => GATE * self.time_scale(sound_speed?),
             },
+            friction_into_walls: raw.friction_into_walls.as_ref()?.value.0,
             strain_relaxation_time: raw.strain_relaxation_time.as_ref()?.value.0,
             pair_viscosity_share: pair_viscosity_share(raw, materials),
             rotation: match raw.rotation.as_ref()?.value {

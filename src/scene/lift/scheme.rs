@@ -40,6 +40,11 @@ fn keys(raw: &RawNumerics) -> Vec<Key<'_>> {
             place(&raw.strain_relaxation_time),
         ),
         (
+            "friction_into_walls",
+            IMPLICIT,
+            place(&raw.friction_into_walls),
+        ),
+        (
             "pair_viscosity_share",
             IMPLICIT,
             place(&raw.pair_viscosity_share),

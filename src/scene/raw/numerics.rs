@@ -47,6 +47,8 @@ table! {
         optional diffusion_gate_time: Time, in Range::from(0.0);
         /// Relaxation time of the strain rate in the pressure law; 20 to 200 ms is useful.
         optional strain_relaxation_time: Time, in Range::above(0.0), default "50 ms";
+        /// Whether dry grains' friction goes on into walls without slip where its ratio to the pressure falls off from them, as in closed chutes, which are else several times too fast unless many rows shear (theory, W14). Columns then run out 1 to 2 % less at coarse spacings, and steps take 5 to 8 % longer. Only with `yield = "exact"`, and in scenes without fluids and saturated material; else it changes nothing.
+        optional friction_into_walls: Flag, default false;
         /// Share of viscous stress carried pair by pair, against zero-energy modes; left out: 0.05, or 0.5 in scenes of Newtonian fluids alone. Above 0.5 iterations of the exact yield may run away.
         optional pair_viscosity_share: Ratio, in Range::within(0.0, 0.95);
         /// Whose rigid rotation makes no stress at free surfaces.

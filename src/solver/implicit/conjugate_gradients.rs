@@ -125,7 +125,7 @@ impl<const D: usize> Solver<D> {
         })
     }
 
-    /// residual = M (v* - v) + dt F(v), walls moving, with what friction at an even ratio makes of M (W11); returns its square.
+    /// residual = M (v* - v) + dt F(v), walls moving, with what friction at an even ratio makes of M (W14); returns its square.
     fn first_residual(&self, state: &State<D>, dt: f64, work: &mut Viscous<D>) -> f64 {
         let Viscous {
             current,
