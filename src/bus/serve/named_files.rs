@@ -35,8 +35,8 @@ const LISTENER: [(&str, &str); 2] = [
     ),
 ];
 
-/// As much of a file as is looked at [bytes].
-const LARGEST: u64 = 1 << 20;
+/// As much of a file as is looked at [bytes]: more than any list of passwords, of which a line must not be cut.
+const LARGEST: u64 = 64 << 20;
 
 /// Refuses files that cannot be read or hold something else, and listeners by TLS that have none.
 pub(super) fn check(config: &Config, listen: &[String]) -> Result<(), BusError> {

@@ -69,8 +69,8 @@ fn speed_between_walls(width: f64, pressure: f64) -> f64 {
 }
 
 /// Nothing presses beads in a closed chute but what they fill it with, and most of it is a plug: 20 rows across shear in two at either
-/// wall. Without (W14) the first has the wall's friction half a spacing inside and the plug slides at 1.96 times its speed, with it
-/// at 1.18, at 1.10 and 1.04 with 40 and 80 rows. A percent of pressure is a sixth of the speed.
+/// wall. Without (W14) the first has the wall's friction half a spacing inside and twice as much passes as should (docs/decisions/016). A
+/// percent of pressure is a sixth of the speed.
 #[test]
 fn beads_slide_between_rough_walls_as_fast_as_friction_lets_them() {
     const WIDTH: f64 = 0.1;
