@@ -11,7 +11,8 @@
  *   Memory     What you pass in is read (or written) during the call only and stays yours. What you get as
  *              `const char *` belongs to the library; how long it stays is said at each function.
  *   Errors     Functions that return int32_t give a sandgate_status; sandgate_last_error has the text. A refused call
- *              changes nothing and the instance goes on; after SANDGATE_STEP_FAILED only reading, restore, reset and
+ *              changes nothing and the instance goes on (SANDGATE_OUTSIDE of a step, restore or terminate in which a
+ *              required log failed: the call was done); after SANDGATE_STEP_FAILED only reading, restore, reset and
  *              terminate are allowed; after SANDGATE_BROKEN only restore, reset and free. No call changes the
  *              locale, the working directory, signal handlers or the floating-point mode, and none ends the process, but
  *              where memory runs out, or a log meets a limit of file sizes with SIGXFSZ not ignored (docs/c.md).

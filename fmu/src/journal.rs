@@ -22,6 +22,7 @@ use sandgate::record::{RecordError, Recorder};
 pub(crate) use sandgate::wire::Moment;
 use sandgate::wire::{Observer, Unobserved, keys};
 
+use crate::asked::shown;
 use crate::fault::Fault;
 use network::Network;
 
@@ -85,9 +86,12 @@ impl Journal {
             None => "link -lsandgate_fmu_zenoh (docs/c.md)",
         };
         match Network::REFUSAL {
-            Some(why) if name == "zenoh.config" && !text.trim().is_empty() => Err(Fault::border(
-                format!("{name}: found {text:?}, allowed \"\": {why}{remedy}"),
-            )),
+            Some(why) if name == "zenoh.config" && !text.trim().is_empty() => {
+                Err(Fault::border(format!(
+                    "{name}: found {:?}, allowed \"\": {why}{remedy}",
+                    shown(name, text)
+                )))
+            }
             _ => Ok(()),
         }
     }

@@ -4,7 +4,7 @@
 use sandgate::component::{Component, StepReport, Wish};
 use sandgate::fmi::FmiVersion;
 
-use crate::asked::Asked;
+use crate::asked::{Asked, shown};
 use crate::fault::Fault;
 
 /// As `sandgate::wire::Moment`.
@@ -32,7 +32,8 @@ impl Journal {
             return Ok(());
         }
         Err(Fault::border(format!(
-            "{name}: found {text:?}, allowed \"\": this library was built without logs and Zenoh"
+            "{name}: found {:?}, allowed \"\": this library was built without logs and Zenoh",
+            shown(name, text)
         )))
     }
 

@@ -1,7 +1,5 @@
 //! A wall that moves as a whole, at constant velocity and angular velocity.
 
-use std::ops::Range;
-
 use super::wall_points::WallPoints;
 use crate::math::{Tensor, Vector, add, apply, multiply, norm, scale, skew, sub};
 
@@ -61,7 +59,7 @@ impl<const D: usize> RigidMotion<D> {
 #[derive(Clone, Debug)]
 pub struct Mover<const D: usize> {
     motion: RigidMotion<D>,
-    points: Range<usize>,
+    points: Vec<usize>,
     position: Vec<Vector<D>>,
     normal: Vec<Vector<D>>,
     to_centre: Vec<Vector<D>>,
@@ -70,46 +68,51 @@ pub struct Mover<const D: usize> {
 }
 
 impl<const D: usize> Mover<D> {
-    /// The points of `group` among the wall points, which stand where they are at time 0 and lie one after the other.
+    /// The points of `group` among the wall points, which stand where they are at time 0.
     #[must_use]
     pub fn new(walls: &WallPoints<D>, group: u16, motion: RigidMotion<D>) -> Self {
-        let of_group = |i: &usize| walls.group[*i] == group;
-        let first = (0..walls.len()).find(of_group).unwrap_or(0);
-        let points = first..first + (0..walls.len()).filter(of_group).count();
-        let position = walls.position[points.clone()].to_vec();
+        // Not one run of points: those in acute corners come after the rows of all walls.
+        let points: Vec<usize> = (0..walls.len())
+            .filter(|&i| walls.group[i] == group)
+            .collect();
+        let of_points = |all: &[Vector<D>]| points.iter().map(|&i| all[i]).collect::<Vec<_>>();
+        let position = of_points(&walls.position);
         let arm = position
             .iter()
             .map(|x| norm(&sub(x, &motion.centre)))
             .fold(0.0, f64::max);
         Self {
             speed: norm(&motion.velocity) + motion.rate.abs() * arm,
-            normal: walls.normal[points.clone()].to_vec(),
-            to_centre: walls.to_centre.get(points.clone()).unwrap_or(&[]).to_vec(),
+            normal: of_points(&walls.normal),
+            to_centre: points
+                .iter()
+                .map(|&i| walls.to_centre.get(i).copied().unwrap_or([0.0; D]))
+                .collect(),
+            position,
             motion,
             points,
-            position,
         }
     }
 
     /// Puts its points where they are at time `t` [s], with their velocities.
     pub fn place(&self, walls: &mut WallPoints<D>, t: f64) {
         let (turn, centre) = (self.motion.rotation_at(t), self.motion.centre_at(t));
-        for (n, i) in self.points.clone().enumerate() {
+        for (n, &i) in self.points.iter().enumerate() {
             let arm = sub(&self.position[n], &self.motion.centre);
             let x = add(&centre, &apply(&turn, &arm));
             walls.velocity[i] = self.motion.velocity_at(&x, t);
             walls.position[i] = x;
             walls.normal[i] = apply(&turn, &self.normal[n]);
-            if let Some(to) = self.to_centre.get(n) {
-                walls.to_centre[i] = apply(&turn, to);
+            if let Some(to) = walls.to_centre.get_mut(i) {
+                *to = apply(&turn, &self.to_centre[n]);
             }
         }
     }
 
-    /// Range of its points among the wall points.
+    /// Its points among the wall points, ascending.
     #[must_use]
-    pub fn range(&self) -> Range<usize> {
-        self.points.clone()
+    pub fn points(&self) -> &[usize] {
+        &self.points
     }
 
     /// How far its points move in `time` [s] at most [m].

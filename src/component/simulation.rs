@@ -58,7 +58,7 @@ impl<const D: usize> Simulation<D> {
             std::array::from_fn(|k| (plan.periodic.length[k] > 0.0).then(|| (lower[k], upper[k])));
         let mut solver = Solver::new(plan, 1);
         solver.start(&mut state);
-        let solids = Solids::new(scene);
+        let solids = Solids::new(scene, periodic);
         let spacing = scene.numerics.spacing;
         let sampler = Sampler::new(scene).into_walls(spacing, |x| solids.holds(x));
         let mut simulation = Self {

@@ -3,6 +3,8 @@
 //! Sums over wall particles do not tell that within a spacing of a face, where a gauge that looks for the end of
 //! material must know it. Surfaces are put where they are by whoever knows how walls move.
 
+use crate::math::{Vector, add};
+
 /// A wall or gate at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Solid<const D: usize> {
@@ -59,6 +61,54 @@ impl<const D: usize> Solid<D> {
                 depth: *depth,
             },
         }
+    }
+
+    /// The same and its images over periodic sides (lower and upper side of each such axis [m]), as far as they reach between these.
+    #[must_use]
+    pub fn images(self, sides: &[Option<(f64, f64)>; D]) -> Vec<Self> {
+        let Some((least, most)) = self.bounds() else {
+            return vec![self];
+        };
+        let mut all = vec![self];
+        for (axis, side) in sides.iter().enumerate() {
+            let Some((lower, upper)) = *side else {
+                continue;
+            };
+            let period = upper - lower;
+            let first = ((lower - most[axis]) / period).ceil() as i64;
+            let last = ((upper - least[axis]) / period).floor() as i64;
+            let shifts = (first..=last).map(|n| n as f64 * period);
+            let shifted = |by: f64| {
+                let moved = move |x: &[f64; D]| {
+                    std::array::from_fn(|k| x[k] + if k == axis { by } else { 0.0 })
+                };
+                all.iter().map(move |solid| solid.moved(moved))
+            };
+            all = shifts.flat_map(shifted).collect();
+        }
+        all
+    }
+
+    /// Smallest and largest coordinates [m]; `None` of a plane, which has none.
+    fn bounds(&self) -> Option<([f64; D], [f64; D])> {
+        let (corners, margin): (Vec<Vector<D>>, f64) = match self {
+            Solid::Behind { .. } => return None,
+            Solid::Block { corner, edges } => {
+                let corners = (0..1 << D).map(|n: usize| {
+                    let taken = edges.iter().enumerate().filter(|(e, _)| n >> e & 1 == 1);
+                    taken.fold(*corner, |x, (_, edge)| add(&x, edge))
+                });
+                (corners.collect(), 0.0)
+            }
+            Solid::Chain { points, depth, .. } => (points.clone(), *depth),
+        };
+        let bound = |of: fn(f64, f64) -> f64, start: f64, margin: f64| {
+            std::array::from_fn(|k| corners.iter().fold(start, |m, x| of(m, x[k])) + margin)
+        };
+        Some((
+            bound(f64::min, f64::INFINITY, -margin),
+            bound(f64::max, f64::NEG_INFINITY, margin),
+        ))
     }
 
     /// Whether a place lies inside, deeper than `slack` [m]: places on a face are before it, however they are rounded.
@@ -181,6 +231,33 @@ mod tests {
         ] {
             assert_eq!(step.holds(&at, 1e-6), inside, "{at:?}");
         }
+    }
+
+    #[test]
+    fn what_a_period_has_moved_out_is_seen_on_the_other_side() {
+        let sides = [Some((0.0, 1.0)), None];
+        let holds = |solids: &[Solid<2>], x: f64| solids.iter().any(|s| s.holds(&[x, 0.04], 1e-6));
+        let block = |x: f64| Solid::<2>::Block {
+            corner: [x, 0.0],
+            edges: [[0.1, 0.0], [0.0, 0.05]],
+        };
+        // (where its left side is, places in it, places beside it)
+        for (x, inside, beside) in [
+            (0.2, [0.25, 0.29], [0.19, 0.31]),
+            (0.95, [0.99, 0.04], [0.94, 0.06]),
+            (3.95, [0.99, 0.04], [0.94, 0.06]),
+            (-2.05, [0.99, 0.04], [0.94, 0.06]),
+            (8.2, [0.25, 0.29], [0.19, 0.31]),
+        ] {
+            let images = block(x).images(&sides);
+            assert!(images.len() <= 2, "{x}: {images:?}");
+            for (at, is) in [(inside, true), (beside, false)] {
+                assert!(at.iter().all(|&a| holds(&images, a) == is), "{x} {at:?}");
+            }
+            assert_eq!(block(x).images(&[None; 2]), [block(x)]);
+        }
+        let paddle = chain(&[[1.5, 0.3], [1.5, 0.0], [1.7, 0.0]], false).images(&sides);
+        assert!(holds(&paddle, 0.45) && !holds(&paddle, 0.55));
     }
 
     #[test]

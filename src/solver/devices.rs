@@ -44,7 +44,7 @@ impl<const D: usize> Solver<D> {
     pub(super) fn place_movers(&mut self, time: f64) {
         for mover in &self.movers {
             mover.place(&mut self.walls, time);
-            for i in mover.range() {
+            for &i in mover.points() {
                 self.periodic.wrap(&mut self.walls.position[i]);
             }
         }

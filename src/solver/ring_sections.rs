@@ -170,6 +170,7 @@ mod tests {
     use super::*;
     use crate::material::Material;
     use crate::solver::sample::{self, SPACING};
+    use crate::solver::{SolverError, StepInputs};
 
     /// Mass, momentum, first moment of mass, volume and kinetic energy.
     fn sums(grains: &Grains<2>) -> [f64; 7] {
@@ -269,6 +270,36 @@ mod tests {
     fn rings_as_the_scene_has_them_stay() {
         let (_, solver, state) = resized((1.0, 1.0), |_| false);
         assert!(state.grains.len() == 196 && solver.moved.before.is_empty());
+    }
+
+    /// Pressures and the like were as long as before the step, and whoever asked after the failure met the end of them.
+    #[test]
+    fn a_step_that_fails_after_rings_were_halved_can_be_looked_at() {
+        let (mut plan, mut state) =
+            sample::disordered::<2>(Material::sand_04(), Geometry::Axisymmetric, 14, 0.2);
+        plan.upper = [0.3; 2];
+        state.next_id = 196;
+        let mut solver = Solver::new(plan, 1);
+        solver.start(&mut state);
+        let grains = &mut state.grains;
+        for (x, m) in grains.position.iter_mut().zip(&mut grains.mass) {
+            *x = x.map(|c| 1.3 * c);
+            *m *= 1.3f64.powi(3);
+        }
+        grains.density[100] = f64::INFINITY;
+        let inputs = StepInputs {
+            openings: &[],
+            rates: &[],
+        };
+        let failed = solver.step(&mut state, 1.0, &inputs, &mut |_, _| {});
+        let quantity = match failed {
+            Err(SolverError::NotFinite { quantity, .. }) => quantity,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(quantity, "density");
+        assert!(state.grains.len() > 196);
+        assert_eq!(solver.pressure().len(), state.grains.len());
+        assert!(solver.validity(&state).share_fast.is_finite());
     }
 
     #[test]

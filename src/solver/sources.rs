@@ -119,7 +119,7 @@ impl<const D: usize> Solver<D> {
     /// Indices of the wall points of gates and of walls that move as a whole.
     fn moving_points(&self) -> impl Iterator<Item = usize> + '_ {
         let plates = self.plates.iter().flat_map(Plate::range);
-        plates.chain(self.movers.iter().flat_map(Mover::range))
+        plates.chain(self.movers.iter().flat_map(Mover::points).copied())
     }
 
     /// Adds a particle at each free slot; their mass [kg].

@@ -59,7 +59,11 @@ impl<const D: usize> Solver<D> {
         let rose = seeps && self.let_rise(state);
         self.sweep_kinematics_in_valid_lists(state, rose);
         self.centre_lone(state);
-        self.advance_density(state, dt, acoustic_dt)?;
+        if let Err(error) = self.advance_density(state, dt, acoustic_dt) {
+            // New lists may have other rows, in another order: who asks what broke reads pressures by them.
+            self.respond(state);
+            return Err(error);
+        }
         let came = self.feed(state, inputs.rates, dt);
         if came {
             self.sweep_kinematics_in_valid_lists(state, true);

@@ -50,11 +50,7 @@ impl<const D: usize> Solver<D> {
                     let i = first + w.row as usize;
                     let material = &self.materials[grains.phase[i] as usize];
                     let reach = trace(&w.lean);
-                    let side = if material.is_fluid() {
-                        norm(&w.s)
-                    } else {
-                        w.sticking
-                    };
+                    let side = w.sticking;
                     if reach == 0.0 || side == 0.0 {
                         continue;
                     }

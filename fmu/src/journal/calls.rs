@@ -8,7 +8,7 @@ use sandgate::wire::{Observer, convert};
 use serde_json::{Map, Value, json};
 
 use super::Journal;
-use crate::asked::Asked;
+use crate::asked::{Asked, shown};
 use crate::fault::Fault;
 
 /// Variables whose names stand in a request; a refused call may name any number of them.
@@ -119,7 +119,13 @@ fn arguments(table: &VariableTable, asked: &Asked<'_>) -> Value {
         }
         Asked::Texts(references, texts) => {
             let pairs = references.iter().zip(*texts).take(MOST_TOLD);
-            pairs.map(|(r, text)| (name(r), json!(text))).collect()
+            pairs
+                .map(|(r, text)| {
+                    let name = name(r);
+                    let text = json!(shown(&name, text));
+                    (name, text)
+                })
+                .collect()
         }
         Asked::Name(name) => json!({"name": name}),
         Asked::Threads(threads) => json!({"threads": threads}),

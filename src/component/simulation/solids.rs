@@ -9,10 +9,12 @@ use crate::scene::{self, Gate, Scene, WallGeometry, narrow};
 pub(super) struct Solids<const D: usize> {
     walls: Vec<(Solid<D>, Option<RigidMotion<D>>)>,
     gates: Vec<Gate>,
+    /// Lower and upper side of each periodic axis [m].
+    sides: [Option<(f64, f64)>; D],
 }
 
 impl<const D: usize> Solids<D> {
-    pub(super) fn new(scene: &Scene) -> Self {
+    pub(super) fn new(scene: &Scene, sides: [Option<(f64, f64)>; D]) -> Self {
         let depth = ROWS as f64 * scene.numerics.spacing;
         let walls = scene.walls.iter().map(|wall| {
             let motion = scene::rigid_motion(&wall.velocity, wall.rotation.as_ref());
@@ -21,6 +23,7 @@ impl<const D: usize> Solids<D> {
         Self {
             walls: walls.collect(),
             gates: scene.gates.clone(),
+            sides,
         }
     }
 
@@ -32,11 +35,12 @@ impl<const D: usize> Solids<D> {
 
     /// All of them after the walls have moved for `time` [s], the gates at these openings.
     pub(super) fn at(&self, time: f64, openings: impl Iterator<Item = f64>) -> Vec<Solid<D>> {
-        let walls = self.walls.iter().map(|(solid, motion)| match motion {
-            None => solid.clone(),
+        let walls = self.walls.iter().flat_map(|(solid, motion)| match motion {
+            None => vec![solid.clone()],
             Some(motion) => {
                 let (turn, centre) = (motion.rotation_at(time), motion.centre_at(time));
-                solid.moved(|x| add(&centre, &apply(&turn, &sub(x, &motion.centre))))
+                let place = |x: &Vector<D>| add(&centre, &apply(&turn, &sub(x, &motion.centre)));
+                solid.moved(place).images(&self.sides)
             }
         });
         let gates = self.gates.iter().zip(openings);

@@ -226,3 +226,74 @@ until = 2
         assert!((force / -thrust - 1.0).abs() < 0.015, "{piston}: {force} N");
     }
 }
+
+/// The points in a paddle's acute corners come after the rows of all walls: they stood still, and points of the floor went round
+/// with it instead.
+#[test]
+fn a_wall_takes_all_of_its_points_along_and_no_others() {
+    let triangle = "[[0.4, 0.2], [0.5, 0.373], [0.6, 0.2]]\nclosed = true";
+    // A gentle bend before an acute corner: some of its points know the centre of a bend, and those in the tip do not.
+    let bent = "[[0.6, 0.2], [0.5, 0.21], [0.4, 0.24], [0.3, 0.29], [0.36, 0.2]]";
+    for paddle in [triangle, bent] {
+        let text = format!(
+            r#"
+name = "paddle"
+[domain]
+lower = [0, 0]
+upper = [1, 1]
+[numerics]
+spacing = "10 mm"
+expected_speed = 1
+[materials.sand]
+law = "mu_i"
+preset = "glass_beads"
+[bodies.heap]
+material = "sand"
+box = {{ lower = [0.7, 0], upper = [0.9, 0.1] }}
+[walls.paddle]
+polyline = {paddle}
+motion = "rigid"
+velocity = [0.1, 0.05]
+angular_velocity = 1.5
+centre = [0.5, 0.25]
+[walls.floor]
+polyline = [[0, 0], [1, 0]]
+[walls.side]
+polyline = [[1, 0.5], [0.8, 0.45], [0.99, 0.8]]
+[run]
+step = "10 ms"
+until = "1 s"
+"#
+        );
+        let (plan, _) = scene::build::<2>(&scene::parse("paddle", &text).unwrap()).unwrap();
+        let (mover, mut walls) = (&plan.movers[0], plan.walls.clone());
+        mover.place(&mut walls, 0.7);
+        let (sin, cos) = 1.05_f64.sin_cos();
+        for i in 0..walls.len() {
+            let [x, y] = plan.walls.position[i];
+            let arm = [x - 0.5, y - 0.25];
+            let place = if walls.group[i] == 0 {
+                [
+                    0.57 + cos * arm[0] - sin * arm[1],
+                    0.285 + sin * arm[0] + cos * arm[1],
+                ]
+            } else {
+                [x, y]
+            };
+            let off = (0..2).map(|k| (walls.position[i][k] - place[k]).abs());
+            assert!(
+                off.fold(0.0, f64::max) < 1e-12,
+                "{i} {:?} {place:?}",
+                walls.position[i]
+            );
+            let turned = |v: [f64; 2]| [cos * v[0] - sin * v[1], sin * v[0] + cos * v[1]];
+            if let Some(to) = plan.walls.bend(i).filter(|_| walls.group[i] == 0) {
+                let (to, now) = (turned(*to), walls.bend(i).unwrap());
+                assert!(
+                    (to[0] - now[0]).abs() + (to[1] - now[1]).abs() < 1e-12,
+                    "{i}"
+                );
+            }
+        }
+    }
+}
