@@ -128,7 +128,12 @@ fn libraries(args: &Args) -> Result<Vec<PathBuf>, Error> {
     platforms.sort_by_key(|platform| platform.name());
     platforms.dedup();
     let found = platforms.into_iter().map(|platform| match platform {
-        Platform::X64Linux if !args.portable => library::locate(None, args.kind()),
+        Platform::X64Linux if !args.portable => {
+            if let Some(command) = library::will_run(args.kind()) {
+                tell!("shared library: `{command}` (a minute or two where sources have changed)");
+            }
+            library::locate(None, args.kind())
+        }
         _ => cross::portable(platform),
     });
     found.collect()

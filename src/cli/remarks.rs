@@ -11,6 +11,8 @@ const MASS_TOLERANCE: f64 = 0.01;
 /// Remarks on a scene, none for most.
 pub(super) fn remarks(scene: &Scene) -> Vec<String> {
     let all = gates(scene).into_iter().chain(gaps(scene));
+    let all = all.chain(overlaps(scene)).chain(beyond(scene));
+    let all = all.chain(meetings(scene));
     let all = all.chain(bodies(scene));
     let all = all.chain(thin_walls(scene));
     all.chain(slips::slips(scene)).collect()
@@ -103,6 +105,48 @@ fn gaps(scene: &Scene) -> Vec<String> {
         })
     });
     gaps.collect()
+}
+
+/// Gates of which each bears a part where they share room.
+fn overlaps(scene: &Scene) -> Vec<String> {
+    let pairs = scene.overlapping_gates().into_iter();
+    pairs
+        .map(|(a, b)| {
+            let (a, b) = (&scene.gates[a].name, &scene.gates[b].name);
+            format!(
+                "note: gates {a} and {b}: their shut plates share room, where each bears a part of what presses on them: forces on one are\n  \
+                 no meaningful numbers. Put one beside or behind the other."
+            )
+        })
+        .collect()
+}
+
+/// Gates that open into a body.
+fn beyond(scene: &Scene) -> Vec<String> {
+    let told = scene.gates.iter().filter_map(|gate| {
+        let body = scene.body_beyond(gate)?;
+        Some(format!(
+            "note: gate {}: body {} goes on beyond `to`. What of the plate has opened past `to` is no longer there: it takes no room\n  \
+             in that body and nothing presses on it, only the plate's end pushes. Let `to` reach a wall or above the material.",
+            gate.name, scene.bodies[body].name,
+        ))
+    });
+    told.collect()
+}
+
+/// Walls that move into others.
+fn meetings(scene: &Scene) -> Vec<String> {
+    let meetings = scene.meetings().into_iter();
+    meetings
+        .map(|meeting| {
+            format!(
+                "note: wall {} goes into wall {} from t = {} s on: walls do not stop each other, and what is between them is squeezed.",
+                scene.walls[meeting.wall].name,
+                scene.walls[meeting.with].name,
+                rounded(meeting.time, 3),
+            )
+        })
+        .collect()
 }
 
 fn length(metres: f64) -> String {

@@ -20,7 +20,11 @@ impl Component {
 
     /// Fixed parameters of the scene that are not what its text says, with their values in SI units.
     pub fn changed_parameters(&self) -> impl Iterator<Item = (&str, f64)> {
-        let all = self.base.adjustables.iter().zip(&self.life.parameters);
+        self.changed(&self.life.parameters)
+    }
+
+    fn changed<'c>(&'c self, parameters: &'c [f64]) -> impl Iterator<Item = (&'c str, f64)> {
+        let all = self.base.adjustables.iter().zip(parameters);
         let changed = all.filter(|(a, value)| a.start.to_bits() != value.to_bits());
         changed.map(|(a, value)| (a.name.as_str(), *value))
     }
@@ -88,7 +92,7 @@ impl Component {
         let scene = self
             .base
             .adjusted(parameters)
-            .map_err(|e| broken_rule(&e))?;
+            .map_err(|e| broken_rule(&e, self.changed(parameters)))?;
         let mut engine = engine::build(&scene)?;
         engine.set_threads(self.threads);
         Ok((scene, engine))
@@ -121,8 +125,12 @@ impl Component {
     }
 }
 
-/// The rules that the parameters break together: the first in full, and where the others are.
-fn broken_rule(errors: &SceneErrors) -> Error {
+/// Changed parameters that are told beside a rule that they break.
+const MOST_TOLD: usize = 8;
+
+/// The rules that the parameters break together: the first in full, where the others are, and what was `changed`, since who
+/// holds an instance cannot mend its scene.
+fn broken_rule<'c>(errors: &SceneErrors, changed: impl Iterator<Item = (&'c str, f64)>) -> Error {
     let [first, others @ ..] = errors.problems() else {
         return Error::Setup(errors.to_string());
     };
@@ -130,6 +138,18 @@ fn broken_rule(errors: &SceneErrors) -> Error {
     if !others.is_empty() {
         let keys: Vec<_> = others.iter().map(|e| e.key.as_str()).collect();
         remedy += &format!("; and {} more, at {}", others.len(), keys.join(", "));
+    }
+    let mut changed = changed.map(|(name, value)| format!("{name} = {}", shown(value)));
+    let told: Vec<String> = changed.by_ref().take(MOST_TOLD).collect();
+    if !told.is_empty() {
+        let more = match changed.count() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        remedy += &format!(
+            "; these have other values than in the scene: {}{more}",
+            told.join(", ")
+        );
     }
     Error::BadArgument {
         call: "fixed parameters",
@@ -156,7 +176,12 @@ mod tests {
         let [first, others @ ..] = errors.problems() else {
             panic!("{errors}")
         };
-        let told = broken_rule(&errors).to_string();
+        let changed = [("solver.resolution_scale", 0.1)].into_iter();
+        let told = broken_rule(&errors, changed).to_string();
+        assert!(
+            told.ends_with("scene: solver.resolution_scale = 0.1"),
+            "{told}"
+        );
         for part in [&first.key, &first.found, &first.allowed, &first.remedy] {
             assert!(told.contains(part.as_str()), "{told}");
         }

@@ -89,6 +89,13 @@ pub fn locate(explicit: Option<&Path>, kind: Kind) -> Result<PathBuf, Error> {
     )))
 }
 
+/// What [`locate`] is going to run to be sure of a library, if none is given.
+#[must_use]
+pub fn will_run(kind: Kind) -> Option<String> {
+    let program = std::env::current_exe().ok()?;
+    source_tree(&program).map(|_| kind.build_command())
+}
+
 /// A file that cannot be read is refused where it is packed.
 fn lacks_zenoh(library: &Path) -> bool {
     let bytes = std::fs::read(library).unwrap_or_default();

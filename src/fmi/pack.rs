@@ -190,7 +190,9 @@ fn with_scene(library: &Path, scene: &Scene) -> Result<(Platform, Vec<u8>), Erro
     };
     match slot::fill(&mut bytes, &scene.source) {
         Ok(()) if !library::says(&bytes, library::BUILT_FROM) => Err(wrong(
-            "it was built from other sources than this program and would refuse the description packed with it".to_owned(),
+            "it was built from other sources than this program and would refuse the description packed with it; where sources \
+             were edited since this program was built, it is the older one: `cargo build --release`, then again"
+                .to_owned(),
         )),
         Ok(()) => Ok((platform, bytes)),
         Err(SlotError::TooLong(found)) => Err(Error::SceneTooLong {

@@ -1,5 +1,6 @@
 //! What can go wrong with log files. Every message says what was found and what to do.
 
+use super::ending::Ending;
 use crate::component;
 use crate::wire::keys::BadInstance;
 use std::io::ErrorKind;
@@ -164,11 +165,23 @@ pub enum ReadError {
     },
     /// The file is something else.
     #[error(
-        "{path} is not an MCAP file: it does not begin with the magic bytes \\x89MCAP0; give a log that a run, an FMU or a component on the bus wrote, such as run.mcap"
+        "{path} is not an MCAP file: {why}; give a log that a run, an FMU or a component on the bus wrote, such as run.mcap"
     )]
     NotALog {
         /// The file.
         path: PathBuf,
+        /// What it lacks.
+        why: &'static str,
+    },
+    /// It was cut before what all that follows is read by.
+    #[error(
+        "log {path} ends before its scene, and nothing of it can be shown or run again: {ending}"
+    )]
+    BeforeScene {
+        /// The file.
+        path: PathBuf,
+        /// How it ends.
+        ending: Ending,
     },
     /// Its chunks are compressed; this program writes and reads logs as they are.
     #[error(

@@ -146,6 +146,13 @@ impl RawReader {
         if magic != expected {
             return Err(ReadError::NotALog {
                 path: path.to_owned(),
+                why: match magic.as_slice() {
+                    [] => "it is empty",
+                    part if expected.starts_with(part) => {
+                        "it ends within the magic bytes that it begins with"
+                    }
+                    _ => "it does not begin with the magic bytes \\x89MCAP0",
+                },
             });
         }
         let mut last = Vec::new();
@@ -188,6 +195,12 @@ impl RawReader {
     #[must_use]
     pub fn ending(&self) -> Option<&Ending> {
         self.ending.as_ref()
+    }
+
+    /// How it was cut, if it was.
+    pub(super) fn how_cut(&self) -> Option<Ending> {
+        let cut = |ending: &&Ending| matches!(ending, Ending::Cut { .. });
+        self.ending.as_ref().filter(cut).cloned()
     }
 
     fn cut(&mut self, why: &McapError) {

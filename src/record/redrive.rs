@@ -12,6 +12,7 @@ mod start;
 use super::Recorder;
 use super::compare::{differ, different_figure, different_particle, same, same_alone};
 use super::ending::Ending;
+use super::error::ReadError;
 use super::raw::{RawEntry, RawMessage, RawReader};
 use super::read::{Body, decode};
 use crate::component::{Component, Mode, StepReport};
@@ -67,7 +68,13 @@ pub fn redrive(
     }
     let mut run = match run {
         Some(run) => run,
-        None => start.run(path, options)?,
+        None => {
+            if let (false, Some(ending)) = (start.has_scene(), source.how_cut()) {
+                let path = path.to_owned();
+                return Err(ReadError::BeforeScene { path, ending }.into());
+            }
+            start.run(path, options)?
+        }
     };
     run.done.ending = source.ending().cloned().unwrap_or(Ending::Complete);
     run.done.version = start.run.get("version").cloned().unwrap_or_default();

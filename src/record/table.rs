@@ -96,8 +96,10 @@ impl Table {
         let mut table = match builder {
             Some(builder) => builder.finish(),
             None => {
-                return Err(TableError::NoScene {
-                    path: path.to_owned(),
+                let path = path.to_owned();
+                return Err(match reader.how_cut() {
+                    Some(ending) => ReadError::BeforeScene { path, ending }.into(),
+                    None => TableError::NoScene { path },
                 });
             }
         };

@@ -2,6 +2,7 @@
 //! may be sealed into the wall that it stands on, and a slot may be meant.
 
 use super::{Gate, Point, Scene, WallGeometry};
+use crate::math::{dot, norm, scale, sub};
 
 /// The part of a gate's opening next to `from` that lies behind a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,8 +90,9 @@ impl Scene {
         let mut nearest: Option<(usize, f64)> = None;
         let fixed = self.walls.iter().enumerate().filter(|(_, w)| !w.rigid);
         for (n, wall) in fixed {
-            // What is behind a wall has no gap to it. The way comes to a wall where the way back leaves it.
-            if leaves(&wall.geometry, end, &back).is_some() {
+            // What is behind a wall or at its face (one that goes on where the gate ends) has no gap to it. The way comes to a wall
+            // where the way back leaves it.
+            if leaves(&wall.geometry, end, &back).is_some() || away(&wall.geometry, end) <= least {
                 return None;
             }
             if let Some(share) = leaves(&wall.geometry, &far, &back) {
@@ -133,6 +135,32 @@ fn leaves(wall: &WallGeometry, start: &Point, edge: &Point) -> Option<f64> {
                 .filter_map(|(a, b)| meets(start, edge, a, b))
                 .min_by(|p, q| p.0.total_cmp(&q.0))?;
             first.1.then_some(first.0)
+        }
+    }
+}
+
+/// How far a place is from a wall's surface [m]; of boxes and planes 0 within.
+fn away(wall: &WallGeometry, at: &Point) -> f64 {
+    match wall {
+        WallGeometry::Box { lower, upper } => {
+            let axes = (0..3).filter(|&k| upper[k] > lower[k]);
+            let beside = axes.map(|k| at[k] - at[k].clamp(lower[k], upper[k]));
+            beside.map(|d| d * d).sum::<f64>().sqrt()
+        }
+        WallGeometry::Plane { point, normal } => {
+            let before: f64 = (0..3).map(|k| (at[k] - point[k]) * normal[k]).sum();
+            before.max(0.0)
+        }
+        WallGeometry::Polyline { points, closed } => {
+            let ends = points.iter().zip(points.iter().skip(1));
+            let last = points.last().zip(points.first()).filter(|_| *closed);
+            ends.chain(last)
+                .map(|(a, b)| {
+                    let (way, to) = (sub(b, a), sub(&[at[0], at[1]], a));
+                    let foot = (dot(&to, &way) / dot(&way, &way)).clamp(0.0, 1.0);
+                    norm(&sub(&to, &scale(foot, &way)))
+                })
+                .fold(f64::INFINITY, f64::min)
         }
     }
 }
@@ -243,6 +271,19 @@ mod tests {
             ] {
                 assert_eq!(gaps(2, wall, gate), [], "{wall}: {gate}");
             }
+        }
+        // A shelf that goes on where the gate ends, and the wall that it starts from.
+        for wall in [
+            "polyline = [[1.2, 0.5], [1.2, 0], [1.23, 0]]",
+            "box = { lower = [1.1, -0.1], upper = [1.23, 0] }\n[walls.side]\nbox = { lower = [1.1, 0], upper = [1.2, 0.5] }",
+        ] {
+            assert_eq!(gaps(2, wall, "from = [1.23, 0]\nto = [1.7, 0]"), [], "{wall}");
+            assert_eq!(gaps(2, wall, "from = [1.7, 0]\nto = [1.23, 0]"), [], "{wall}");
+            let beside = gaps(2, wall, "from = [1.26, 0.1]\nto = [1.7, 0.1]");
+            assert!(
+                matches!(beside[..], [("from", width)] if (width - 0.06).abs() < 1e-12),
+                "{wall}: {beside:?}"
+            );
         }
         let side = "plane = { point = [0, 0, 0.2], normal = [0, 0, -1] }";
         let gate = "from = [1.5, 0, 0]\nto = [1.5, 0.4, 0]\nspan = [0, 0, 0.16]\nthickness = 0.08";

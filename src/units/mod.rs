@@ -71,6 +71,10 @@ pub fn parse(text: &str, expected: Quantity) -> Result<f64, UnitError> {
             .find(|q| q.symbols().any(|s| s == symbol))
         {
             Some(other) => refuse(&format!(" ({})", with_article(other.name()))),
+            None if symbol.starts_with(',') => refuse(&format!(
+                " (unknown unit {}; decimals come after a point)",
+                quote(symbol)
+            )),
             None => refuse(&format!(" (unknown unit {})", quote(symbol))),
         };
     };
@@ -209,7 +213,10 @@ mod tests {
             ("inf m", "not a decimal number"),
             ("", "not a decimal number"),
             ("mm", "not a decimal number"),
-            ("2,5 mm", "unknown unit \",5 mm\""),
+            (
+                "2,5 mm",
+                "unknown unit \",5 mm\"; decimals come after a point",
+            ),
             ("1e999 m", "too large"),
             ("2 e", "unknown unit \"e\""),
         ] {

@@ -10,8 +10,8 @@ const HEAD: &str = "# Variables
 Written by `SANDGATE_REGENERATE=1 cargo test --release variables` from the one table in
 src/component/variables/rows.rs; a test fails when it is stale.
 
-Every adapter shows these names: FMI 2 and 3, the C ABI, Zenoh, MCAP and `sandgate run`. Value references are those of
-FMI and C. Names in brackets, `depth[1]`, are the elements of an array; FMI 2 lists elements only, FMI 3 both.
+Every adapter shows these names: FMI 2 and 3, the C ABI, Zenoh, MCAP and `sandgate run`; `log.path`, `log.required` and `zenoh.config` are for
+FMI and C alone. Value references are those of FMI and C. Names in brackets, `depth[1]`, are the elements of an array; FMI 2 lists elements only, FMI 3 both.
 
 An input is held over a communication step. All outputs are sampled once, at the end of a step (and once before the
 first), so reading them is cheap and never changes anything. Gates and inflows start from the scene's own start values

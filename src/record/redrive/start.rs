@@ -53,6 +53,11 @@ impl Start {
         }
     }
 
+    /// Whether the scene was read.
+    pub(super) fn has_scene(&self) -> bool {
+        self.scene.is_some()
+    }
+
     /// The run that begins here, with its own log if one is wanted.
     pub(super) fn run(&self, path: &Path, options: &RedriveOptions) -> Result<Run, RedriveError> {
         let missing = |problem: &str| RedriveError::Missing {

@@ -6,6 +6,7 @@ use crate::math::{Vector, dot, sub};
 use crate::scene::Scene;
 use crate::solver::{INSIDE, Plan, Scheme};
 use crate::state::{CellGrid, State};
+use crate::units::shown;
 
 /// What starts may be so near to a point of a wall or gate [spacing].
 const START: f64 = 0.3;
@@ -62,7 +63,8 @@ fn check_inflows<const D: usize>(
     for (inflow, source) in scene.inflows.iter().zip(&plan.sources) {
         let name = &inflow.name;
         for x in &source.slots {
-            let lets_in = || format!("inflow {name} lets in at {:?} m", &x[..]);
+            let place = || x.map(|c| shown((c * 1e6).round() / 1e6)).join(", ");
+            let lets_in = || format!("inflow {name} lets in at [{}] m", place());
             if let Some(group) = obstacles.holds(x, INSIDE) {
                 return Err(format!(
                     "{}, inside {}: move its face out of there, to where material has room; on the wall's own face it may lie",

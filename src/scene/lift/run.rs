@@ -6,7 +6,7 @@ use super::full_names::full_names;
 use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint, SyncWord};
 use crate::scene::types::{Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule};
 use crate::solver::Numerics;
-use crate::units::{Quantity, quote};
+use crate::units::{Quantity, quote, shown_bound};
 
 /// Most internal steps until the end: a thousand particles take weeks for them.
 const MOST_INTERNAL_STEPS: f64 = 1e9;
@@ -183,7 +183,7 @@ impl Lift<'_> {
         self.problems.report(
             &at.place,
             format!("a value of {value}{unit}"),
-            format!("0 to {most}{unit}, the range of this input"),
+            format!("0 to {}{unit}, the range of this input", shown_bound(most)),
             "choose a value in this range",
         );
         None

@@ -55,7 +55,7 @@ choice! {
 }
 
 table! {
-    /// A plate that slides along its own length. Its face runs from `from` to `to` with material on the left (in space on the side of span x (to - from), where an inflow's is the other); opening o uncovers the share o next to `from`, and the plate retracts beyond `to`.
+    /// A plate that slides along its own length. Its face runs from `from` to `to` with material on the left (in space on the side of span x (to - from), where an inflow's is the other); opening o uncovers the share o next to `from`, and the plate retracts towards `to`: what of it has passed `to` is no longer there, as if it went into a wall.
     RawGate {
         /// End that opens first.
         required from: Coordinates<Length>;

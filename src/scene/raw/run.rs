@@ -7,7 +7,7 @@ table! {
     RawRun {
         /// Communication step: inputs are read and gauges sampled this often.
         required step: Time, in Range::above(0.0);
-        /// End of a run without an orchestrator, and default stop time of the FMU; at least one step, and at most 1e9 internal steps.
+        /// End of a run without an orchestrator, and default stop time of the FMU; at least one step, at most 1e8 of them and 1e9 internal ones.
         required until: Time, in Range::above(0.0);
     }
 }
