@@ -6,7 +6,7 @@
 use super::engine::Devices;
 use crate::gauge::{
     self, Crossing, DepthLine, Edge, Field, Front, MassBox, PRESSED_IN, PressureProbe, Profile,
-    Reading,
+    Reading, VelocityProbe,
 };
 use crate::gauge::{Validity, View};
 use crate::scene::{ForceTarget, Gauge, GaugeKind, Point, PressureQuantity, Scene};
@@ -27,6 +27,8 @@ pub(crate) struct Sight {
     pub(crate) material: Option<u8>,
     /// Which pressure.
     pub(crate) quantity: PressureQuantity,
+    /// Velocities, too.
+    pub(crate) moving: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -59,6 +61,7 @@ impl<const D: usize> Sampler<D> {
                 GaugeKind::Pressure { quantity, .. } => quantity,
                 _ => PressureQuantity::Total,
             },
+            moving: matches!(g.kind, GaugeKind::Velocity { .. }),
         };
         Self {
             gauges,
@@ -249,6 +252,7 @@ fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
         GaugeKind::Pressure { at, .. } => {
             Kind::Field(Field::Pressure(PressureProbe { at: flat(at) }))
         }
+        GaugeKind::Velocity { at } => Kind::Field(Field::Velocity(VelocityProbe { at: flat(at) })),
         GaugeKind::InterfaceStress { foot, up, length } => Kind::Interface {
             line: DepthLine {
                 foot: flat(foot),

@@ -8,6 +8,7 @@
 
 mod crossing;
 mod depth;
+mod fit;
 mod front;
 mod interface;
 mod mass;
@@ -15,6 +16,7 @@ mod nearby;
 mod pressure;
 mod profile;
 mod solid;
+mod velocity;
 mod view;
 
 pub use crossing::Crossing;
@@ -25,6 +27,7 @@ pub use mass::{MassBox, PRESSED_IN};
 pub use pressure::PressureProbe;
 pub use profile::Profile;
 pub use solid::Solid;
+pub use velocity::VelocityProbe;
 pub use view::{View, is_outside};
 
 /// Whether a reading means something. Its number is what the `gauge.NAME.validity` variable shows.
@@ -92,6 +95,8 @@ pub enum Field<const D: usize> {
     Profile(Profile<D>),
     /// One value: pressure [Pa].
     Pressure(PressureProbe<D>),
+    /// D values: velocity [m/s].
+    Velocity(VelocityProbe<D>),
     /// Two values: front and 99.5 % mass quantile [m].
     Front(Front<D>),
     /// One value: mass in a box [kg].
@@ -105,6 +110,7 @@ pub fn sample<const D: usize>(gauge: &Field<D>, view: &View<D>) -> Reading {
         Field::Depth(line) => line.sample(view),
         Field::Profile(profile) => profile.sample(view),
         Field::Pressure(probe) => probe.sample(view),
+        Field::Velocity(probe) => probe.sample(view),
         Field::Front(front) => front.sample(view),
         Field::Mass(counted) => counted.sample(view),
     }

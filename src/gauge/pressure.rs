@@ -1,14 +1,7 @@
-//! Pressure at a point: the value there of the straight line (plane) that fits the pressures of the particles around best,
-//! weighted with V W. A mean alone would read what is a little above a point near the floor, where half the particles are
-//! missing.
-//!
-//! Symbols: w = V W(|x - x_j|), d = x_j - x, bars means with w, C = mean (d - d_bar)(d - d_bar), b = C^-1 mean (d - d_bar) p;
-//! p = p_bar - b . d_bar >= 0. Where too few particles tell b it is left out.
+//! Pressure at a point, that of a linear fit ([`super::fit`]), at least 0.
 
-use super::{Reading, Validity, View};
-
-/// Shepard sum below which no mean is given: less than a quarter of a lone grain's weight at its own centre.
-const DRY: f64 = 0.05;
+use super::fit::fit_at;
+use super::{Reading, View};
 
 /// A point where pressure is measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,59 +14,16 @@ impl<const D: usize> PressureProbe<D> {
     /// One value: pressure [Pa].
     #[must_use]
     pub fn sample(&self, view: &View<D>) -> Reading {
-        if view.is_outside(&self.at) {
-            return Reading::none(1, Validity::Outside);
-        }
-        // Walls are hollow deep inside, and corners between walls that meet are behind neither.
-        if view.is_inside(&self.at) || view.is_covered(&self.at) {
-            return Reading::none(1, Validity::Blocked);
-        }
-        match fit_at(view, &self.at) {
-            Some(pressure) => Reading::valid(vec![pressure]),
-            None => Reading::none(1, Validity::Empty),
+        match fit_at(view, &self.at, |j, _| [view.pressure[j]]) {
+            Ok([pressure]) => Reading::valid(vec![pressure.max(0.0)]),
+            Err(why) => Reading::none(1, why),
         }
     }
-}
-
-/// Value at a place of the linear fit to what `view` shows as pressure; `None` where there is too little material.
-fn fit_at<const D: usize>(view: &View<D>, at: &[f64; D]) -> Option<f64> {
-    let mut weights = 0.0;
-    let mut near: Vec<(f64, [f64; D], f64)> = Vec::new();
-    view.for_each_particle(at, |j, x, r| {
-        let weight = view.volume(j) * view.kernel.w(r);
-        weights += weight;
-        near.push((weight, crate::math::sub(&x, at), view.pressure[j]));
-    });
-    (weights >= DRY).then(|| fitted(&near, weights, view.spacing).max(0.0))
-}
-
-/// Value at d = 0 of the linear fit to rows of weight, place d [m] and pressure [Pa].
-fn fitted<const D: usize>(near: &[(f64, [f64; D], f64)], weights: f64, spacing: f64) -> f64 {
-    let (mut place, mut pressure) = ([0.0; D], 0.0);
-    for (w, d, p) in near {
-        for a in 0..D {
-            place[a] += w / weights * d[a];
-        }
-        pressure += w / weights * p;
-    }
-    let (mut spread, mut together) = ([[0.0; D]; D], [0.0; D]);
-    for (w, d, p) in near {
-        let d = crate::math::sub(d, &place);
-        crate::math::add_outer(&mut spread, w / weights, &d, &d);
-        for a in 0..D {
-            together[a] += w / weights * d[a] * (p - pressure);
-        }
-    }
-    // Of a filled support the determinant is about (0.6 dp)^2D; a row along one line has none.
-    if crate::math::determinant(&spread) < (0.04 * spacing * spacing).powi(D as i32) {
-        return pressure;
-    }
-    let slope = crate::math::apply(&crate::math::inverse(&spread), &together);
-    pressure - crate::math::dot(&slope, &place)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::Validity;
     use super::super::view::bed::Bed;
     use super::*;
 

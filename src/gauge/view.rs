@@ -19,6 +19,8 @@ pub struct View<'a, const D: usize> {
     pub density: &'a [f64],
     /// Pressures [Pa].
     pub pressure: &'a [f64],
+    /// Velocities [m/s]; empty where no gauge reads them.
+    pub velocity: &'a [[f64; D]],
     /// The grid over `position`.
     pub cells: &'a CellGrid<D>,
     /// The grid over wall and gate particles, one each spacing^D of solid; may be empty.
@@ -238,6 +240,15 @@ pub(super) mod bed {
                 .iter()
                 .map(|x| self.pressure_at(x[1]))
                 .collect();
+            // (3 + 2 y, x, 0).
+            let flow = |x: &[f64; D]| {
+                std::array::from_fn(|a| match a {
+                    0 => 3.0 + 2.0 * x[1],
+                    1 => x[0],
+                    _ => 0.0,
+                })
+            };
+            let velocity: Vec<[f64; D]> = self.position.iter().map(flow).collect();
             let upper = std::array::from_fn(|a| if a == 1 { 1.0 } else { length });
             let lower = std::array::from_fn(|a| if a == 1 { -0.05 } else { 0.0 });
             gauge(&View {
@@ -245,6 +256,7 @@ pub(super) mod bed {
                 mass: &vec![1500.0 * geometry.width() * self.spacing.powi(D as i32); count],
                 density: &vec![1500.0; count],
                 pressure: &pressure,
+                velocity: &velocity,
                 cells: &CellGrid::build(&self.position, kernel.support(), &periods),
                 solid: &CellGrid::build(&self.solid, kernel.support(), &periods),
                 solids: &self.solids,

@@ -277,8 +277,16 @@ mod tests {
             "polyline = [[1.2, 0.5], [1.2, 0], [1.23, 0]]",
             "box = { lower = [1.1, -0.1], upper = [1.23, 0] }\n[walls.side]\nbox = { lower = [1.1, 0], upper = [1.2, 0.5] }",
         ] {
-            assert_eq!(gaps(2, wall, "from = [1.23, 0]\nto = [1.7, 0]"), [], "{wall}");
-            assert_eq!(gaps(2, wall, "from = [1.7, 0]\nto = [1.23, 0]"), [], "{wall}");
+            assert_eq!(
+                gaps(2, wall, "from = [1.23, 0]\nto = [1.7, 0]"),
+                [],
+                "{wall}"
+            );
+            assert_eq!(
+                gaps(2, wall, "from = [1.7, 0]\nto = [1.23, 0]"),
+                [],
+                "{wall}"
+            );
             let beside = gaps(2, wall, "from = [1.26, 0.1]\nto = [1.7, 0.1]");
             assert!(
                 matches!(beside[..], [("from", width)] if (width - 0.06).abs() < 1e-12),

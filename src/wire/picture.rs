@@ -186,7 +186,9 @@ impl Artist<'_> {
                     corner(l[0], l[1]),
                 ]
             }
-            GaugeKind::Pressure { .. } | GaugeKind::Force { .. } => Vec::new(),
+            GaugeKind::Pressure { .. } | GaugeKind::Velocity { .. } | GaugeKind::Force { .. } => {
+                Vec::new()
+            }
         }
     }
 
@@ -270,7 +272,7 @@ fn label_at(kind: &GaugeKind) -> Option<Point> {
     match kind {
         GaugeKind::Depth { foot, .. } | GaugeKind::InterfaceStress { foot, .. } => Some(*foot),
         GaugeKind::Profile { from, .. } | GaugeKind::Discharge { from, .. } => Some(*from),
-        GaugeKind::Pressure { at, .. } => Some(*at),
+        GaugeKind::Pressure { at, .. } | GaugeKind::Velocity { at } => Some(*at),
         GaugeKind::Front { origin, .. } => Some(*origin),
         GaugeKind::Mass { lower, .. } => Some(*lower),
         GaugeKind::Force { .. } => None,

@@ -271,6 +271,7 @@ fn gauge_kind(scene: &Scene, kind: &GaugeKind) -> String {
             ForceTarget::Gate(gate) => format!("force on gate {}", scene.gates[*gate].name),
         },
         GaugeKind::Pressure { .. } => "pressure at a point".to_owned(),
+        GaugeKind::Velocity { .. } => "velocity at a point".to_owned(),
         GaugeKind::InterfaceStress { .. } => "shear stress at the top of a material".to_owned(),
         GaugeKind::Front { .. } => "front position".to_owned(),
         GaugeKind::Mass { .. } => "mass in a box".to_owned(),

@@ -13,6 +13,8 @@ struct Shown<const D: usize> {
     mass: Vec<f64>,
     density: Vec<f64>,
     pressure: Vec<f64>,
+    /// Empty where no gauge reads it.
+    velocity: Vec<Vector<D>>,
     cells: CellGrid<D>,
 }
 
@@ -54,6 +56,7 @@ impl<const D: usize> Simulation<D> {
                 mass: &shown.mass,
                 density: &shown.density,
                 pressure: &shown.pressure,
+                velocity: &shown.velocity,
                 cells: &shown.cells,
                 solid: &solid,
                 solids: &solids,
@@ -108,6 +111,10 @@ impl<const D: usize> Simulation<D> {
             mass: pick(&grains.mass),
             density: pick(&grains.density),
             pressure: pick(&pressure),
+            velocity: match sight.moving {
+                true => seen.iter().map(|&i| grains.velocity[i]).collect(),
+                false => Vec::new(),
+            },
         }
     }
 

@@ -20,6 +20,7 @@ pub(super) fn rows(scene: &Scene, place: usize, gauge: &Gauge) -> Vec<Row> {
         GaugeKind::Discharge { .. } => this.discharge(),
         GaugeKind::Force { .. } => this.force(),
         GaugeKind::Pressure { quantity, .. } => vec![this.pressure(*quantity)],
+        GaugeKind::Velocity { .. } => this.velocity(),
         GaugeKind::InterfaceStress { .. } => vec![this.shear_stress()],
         GaugeKind::Mass { .. } => vec![this.reading("mass", "kg", 0, "mass in the box")],
         GaugeKind::Front { .. } => this.front(),
@@ -102,16 +103,29 @@ impl Gauged<'_> {
         ]
     }
 
-    /// One row each axis of the scene.
     fn force(&self) -> Vec<Row> {
+        self.along_axes("force", "N", |axis| {
+            format!("force of the material along {axis}, mean over the last step,")
+        })
+    }
+
+    fn velocity(&self) -> Vec<Row> {
+        self.along_axes("velocity", "m/s", |axis| {
+            format!("velocity of the material along {axis}")
+        })
+    }
+
+    /// One row each axis of the scene.
+    fn along_axes(
+        &self,
+        name: &str,
+        unit: &'static str,
+        text: impl Fn(&str) -> String,
+    ) -> Vec<Row> {
         let axes = ["x", "y", "z"].into_iter();
-        let force = |(k, axis): (usize, &str)| {
-            let text = format!("force of the material along {axis}, mean over the last step,");
-            self.reading(&format!("force_{axis}"), "N", k, &text)
-        };
         axes.take(self.scene.dimension.axes())
             .enumerate()
-            .map(force)
+            .map(|(k, axis)| self.reading(&format!("{name}_{axis}"), unit, k, &text(axis)))
             .collect()
     }
 

@@ -52,6 +52,11 @@ impl Pen<'_, '_> {
                 self.dot(at, "pressure at this point");
                 at
             }
+            GaugeKind::Velocity { at } => {
+                let at = self.svg.view.place(*at);
+                self.dot(at, "velocity at this point");
+                at
+            }
             GaugeKind::Mass { lower, upper } => self.mass(*lower, *upper),
             GaugeKind::Front {
                 origin, direction, ..

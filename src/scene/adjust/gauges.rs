@@ -38,6 +38,7 @@ fn points(gauge: &RawGauge) -> Vec<(&'static str, &Coordinates<Length>)> {
         RawGauge::Profile(g) => vec![("from", &g.from), ("to", &g.to)],
         RawGauge::Discharge(g) => vec![("from", &g.from), ("to", &g.to)],
         RawGauge::Pressure(g) => vec![("at", &g.at)],
+        RawGauge::Velocity(g) => vec![("at", &g.at)],
         RawGauge::Front(g) => vec![("origin", &g.origin)],
         RawGauge::Force(_) | RawGauge::Mass(_) => Vec::new(),
     };
@@ -56,6 +57,7 @@ pub(super) fn apply(gauge: &mut RawGauge, point: usize, axis: usize, value: f64)
         (RawGauge::Discharge(g), 0) => &mut g.from,
         (RawGauge::Discharge(g), _) => &mut g.to,
         (RawGauge::Pressure(g), _) => &mut g.at,
+        (RawGauge::Velocity(g), _) => &mut g.at,
         (RawGauge::Front(g), _) => &mut g.origin,
         (RawGauge::Force(_) | RawGauge::Mass(_), _) => return,
     };

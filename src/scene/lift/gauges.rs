@@ -55,6 +55,10 @@ impl Lift<'_> {
                 let quantity = self.quantity(raw)?;
                 Some(GaugeKind::Pressure { at, quantity })
             }
+            RawGauge::Velocity(raw) => {
+                let at = self.point(raw.at.as_ref()?)?;
+                Some(GaugeKind::Velocity { at })
+            }
             RawGauge::Front(raw) => self.front(raw),
             RawGauge::Mass(raw) => {
                 let (lower_at, upper_at) = (raw.lower.as_ref(), raw.upper.as_ref());
@@ -77,6 +81,7 @@ impl Lift<'_> {
             RawGauge::Profile(raw) => &raw.material,
             RawGauge::Discharge(raw) => &raw.material,
             RawGauge::Pressure(raw) => &raw.material,
+            RawGauge::Velocity(raw) => &raw.material,
             RawGauge::Front(raw) => &raw.material,
             RawGauge::Mass(raw) => &raw.material,
             RawGauge::Force(_) => &None,

@@ -13,6 +13,7 @@ tagged! {
         "interface_stress" => InterfaceStress(RawInterfaceStress),
         "front" => Front(RawFront),
         "mass" => Mass(RawMass),
+        "velocity" => Velocity(RawVelocity),
     }
 }
 
@@ -91,6 +92,16 @@ table! {
         required at: Coordinates<Length>;
         /// Which pressure: of the whole material, in the pores, or of grain on grain.
         optional quantity: QuantityWord, default "total";
+        /// Only this material; all if left out.
+        optional material: Text;
+    }
+}
+
+table! {
+    /// Velocity at a point, as a current meter reads it: along x and y (of rings along the radius and the axis), in space also along z.
+    RawVelocity {
+        /// The point.
+        required at: Coordinates<Length>;
         /// Only this material; all if left out.
         optional material: Text;
     }

@@ -60,6 +60,11 @@ pub enum GaugeKind {
         /// Which pressure.
         quantity: PressureQuantity,
     },
+    /// Velocity at a point, that of a linear fit to particles [m/s].
+    Velocity {
+        /// The point [m].
+        at: Point,
+    },
     /// Shear stress at the highest point of one material on a line [Pa]: between it and what lies above.
     InterfaceStress {
         /// Foot of the line [m].

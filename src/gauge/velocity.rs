@@ -1,0 +1,68 @@
+//! Velocity at a point, that of a linear fit ([`super::fit`]): what a current meter reads.
+
+use super::fit::fit_at;
+use super::{Reading, View};
+
+/// A point where velocity is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VelocityProbe<const D: usize> {
+    /// The point [m].
+    pub at: [f64; D],
+}
+
+impl<const D: usize> VelocityProbe<D> {
+    /// D values: velocity along each axis [m/s].
+    #[must_use]
+    pub fn sample(&self, view: &View<D>) -> Reading {
+        let velocity = |j: usize, is_image: bool| {
+            let mut v = view.velocity[j];
+            if is_image {
+                v[0] = -v[0];
+            }
+            v
+        };
+        match fit_at(view, &self.at, velocity) {
+            Ok(velocity) => Reading::valid(velocity.to_vec()),
+            Err(why) => Reading::none(D, why),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Validity;
+    use super::super::view::bed::Bed;
+    use super::*;
+
+    /// The bed's particles move at (3 + 2 y, x, 0), whatever the row a point is near.
+    #[test]
+    fn a_linear_flow_is_read_as_it_is_from_the_floor_to_the_surface() {
+        for jitter in [0.0, 0.1] {
+            let bed = Bed::<2>::new(1.6, 12, jitter);
+            for y in [0.004, 0.01, 0.05, 0.07, 0.083, 0.119] {
+                let at = [0.21, y];
+                let reading = bed.look(|view| VelocityProbe { at }.sample(view));
+                let off = [reading.values[0] - 3.0 - 2.0 * y, reading.values[1] - 0.21];
+                assert!(off.iter().all(|d| d.abs() < 1e-9), "{y}: {reading:?}");
+            }
+        }
+        let bed = Bed::<3>::new(1.6, 6, 0.0);
+        let at = [0.07, 0.03, 0.06];
+        let reading = bed.look(|view| VelocityProbe { at }.sample(view));
+        let off = [
+            reading.values[0] - 3.06,
+            reading.values[1] - 0.07,
+            reading.values[2],
+        ];
+        assert!(off.iter().all(|d| d.abs() < 1e-9), "{reading:?}");
+    }
+
+    #[test]
+    fn air_and_walls_have_none() {
+        let bed = Bed::<2>::new(1.6, 4, 0.0);
+        let sample = |at: [f64; 2]| bed.look(|view| VelocityProbe { at }.sample(view));
+        assert_eq!(sample([0.2, 0.2]), Reading::none(2, Validity::Empty));
+        assert_eq!(sample([0.2, -0.02]), Reading::none(2, Validity::Blocked));
+        assert_eq!(sample([0.2, 9.0]), Reading::none(2, Validity::Outside));
+    }
+}
