@@ -112,6 +112,8 @@ pub(crate) struct Devices {
     pub(crate) outflow_mass: Vec<f64>,
     /// Impulse of the material on each wall over the last advance [N s].
     pub(crate) wall_impulse: Vec<[f64; 3]>,
+    /// Moments of such impulses that force gauges read, in their order [N m s].
+    pub(crate) moment: Vec<[f64; 3]>,
 }
 
 /// Why the solver gave up. The component is in mode Failed afterwards.

@@ -39,7 +39,11 @@ enum Kind<const D: usize> {
         /// Mass that had crossed when the communication step began [kg].
         before: f64,
     },
-    Force(ForceTarget),
+    Force {
+        on: ForceTarget,
+        /// Which of the moments that are read.
+        moment: Option<usize>,
+    },
     /// Where a material ends.
     Interface {
         line: DepthLine<D>,
@@ -54,7 +58,9 @@ impl<const D: usize> Sampler<D> {
             let domain = &scene.domain;
             domain.periodic[a].then_some(domain.upper[a] - domain.lower[a])
         });
-        let gauges = scene.gauges.iter().map(|g| kind(g, &period)).collect();
+        let mut moments = 0..;
+        let gauges = scene.gauges.iter();
+        let gauges = gauges.map(|g| kind(g, &period, &mut moments)).collect();
         let sight = |g: &Gauge| Sight {
             material: g.material.map(|m| m as u8),
             quantity: match g.kind {
@@ -179,7 +185,7 @@ impl<const D: usize> Sampler<D> {
                 Reading::none(2, Validity::Outside)
             }
             Kind::Discharge { section, before } => discharge(section, *before, step),
-            Kind::Force(target) => force::<D>(*target, devices, step),
+            Kind::Force { on, moment } => force::<D>((*on, *moment), devices, step),
             Kind::Interface { line, material } => {
                 gauge::interface_stress(line, &view(*sight), &edge(*material))
             }
@@ -198,7 +204,7 @@ impl<const D: usize> Sampler<D> {
             Kind::Field(_) | Kind::Interface { .. } => before.clone(),
             _ if before.validity == Validity::Outside => before.clone(),
             Kind::Discharge { section, before } => discharge(section, *before, step),
-            Kind::Force(target) => force::<D>(*target, devices, step),
+            Kind::Force { on, moment } => force::<D>((*on, *moment), devices, step),
         };
         self.gauges.iter().zip(still).map(read).collect()
     }
@@ -210,13 +216,21 @@ fn discharge<const D: usize>(section: &Crossing<D>, before: f64, step: f64) -> R
     Reading::valid(vec![over_step(mass - before, step), mass])
 }
 
-/// Mean force over the last step.
-fn force<const D: usize>(target: ForceTarget, devices: &Devices, step: f64) -> Reading {
-    let impulse = match target {
+/// Mean force over the last step, and its moment: about z in the plane, else about each axis.
+fn force<const D: usize>(
+    (on, moment): (ForceTarget, Option<usize>),
+    devices: &Devices,
+    step: f64,
+) -> Reading {
+    let impulse = match on {
         ForceTarget::Wall(i) => devices.wall_impulse[i],
         ForceTarget::Gate(i) => devices.gates[i].impulse,
     };
-    Reading::valid(impulse[..D].iter().map(|i| over_step(*i, step)).collect())
+    let turning = moment.map_or(&[][..], |n| {
+        &devices.moment[n][..if D == 2 { 1 } else { D }]
+    });
+    let all = impulse[..D].iter().chain(turning);
+    Reading::valid(all.map(|i| over_step(*i, step)).collect())
 }
 
 fn over_step(value: f64, step: f64) -> f64 {
@@ -224,7 +238,11 @@ fn over_step(value: f64, step: f64) -> f64 {
 }
 
 /// The gauge of one row of the scene.
-fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
+fn kind<const D: usize>(
+    gauge: &Gauge,
+    period: &[Option<f64>; D],
+    moments: &mut std::ops::RangeFrom<usize>,
+) -> Kind<D> {
     match &gauge.kind {
         GaugeKind::Depth { foot, up, length } => Kind::Field(Field::Depth(DepthLine {
             foot: flat(foot),
@@ -248,7 +266,10 @@ fn kind<const D: usize>(gauge: &Gauge, period: &[Option<f64>; D]) -> Kind<D> {
             section: Crossing::new(flat(from), flat(to), flat(span), *period),
             before: 0.0,
         },
-        GaugeKind::Force { on } => Kind::Force(*on),
+        GaugeKind::Force { on, about } => Kind::Force {
+            on: *on,
+            moment: about.and_then(|_| moments.next()),
+        },
         GaugeKind::Pressure { at, .. } => {
             Kind::Field(Field::Pressure(PressureProbe { at: flat(at) }))
         }

@@ -84,7 +84,8 @@ impl<const D: usize> Simulation<D> {
 
     fn refresh_devices(&mut self) {
         let state = &self.state;
-        let (walls, gates) = state.impulse.split_at(self.walls);
+        let (walls, others) = state.impulse.split_at(self.walls);
+        let (gates, moments) = others.split_at(state.gates.len());
         self.devices = Devices {
             gates: state
                 .gates
@@ -106,6 +107,7 @@ impl<const D: usize> Simulation<D> {
                 .collect(),
             outflow_mass: state.drained.clone(),
             wall_impulse: walls.iter().map(three).collect(),
+            moment: moments.iter().map(three).collect(),
         };
     }
 

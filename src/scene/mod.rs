@@ -182,6 +182,14 @@ impl Scene {
         self.slips().any(|s| s.friction() > 0.0)
     }
 
+    /// Walls and gates whose moment a gauge reads, with the points that it is taken about [m], in the order of the gauges.
+    pub fn moments(&self) -> impl Iterator<Item = (ForceTarget, Point)> {
+        self.gauges.iter().filter_map(|gauge| match gauge.kind {
+            GaugeKind::Force { on, about } => Some((on, about?)),
+            _ => None,
+        })
+    }
+
     /// Whether grains' friction goes on into walls (docs/theory.md, W14): asked for, the exact yield, a wall or gate without slip, and neither fluids nor
     /// full pores, with which the pressure between grains is not all of it.
     #[must_use]

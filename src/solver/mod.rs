@@ -94,7 +94,7 @@ pub use paper_a::{PaperA, Sweeps};
 pub use paper_b::PaperB;
 #[cfg(any(test, feature = "cli"))]
 pub use passes::{Pass, Passes};
-pub use plan::{OnMove, Plan, StepBound, StepInputs, SubStep};
+pub use plan::{Moment, OnMove, Plan, StepBound, StepInputs, SubStep};
 pub use rest::StaysAwake;
 pub use sources::{INSIDE, Source};
 pub use validity::Validity;
@@ -145,6 +145,7 @@ pub struct Solver<const D: usize> {
     /// Whether one of them pushes (W13).
     has_streams: bool,
     sinks: Vec<Sink<D>>,
+    moments: Vec<Moment<D>>,
     workers: Arc<Workers>,
     /// Instructions of the hot loops.
     arch: Arch,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::boundary::{Mover, Plate, RigidMotion, WallPoints};
 use crate::material::Material;
-use crate::math::{Geometry, Vector};
+use crate::math::{Geometry, Vector, cross, sub};
 use crate::state::Grains;
 
 use super::{Numerics, Periodic, Sink, Source};
@@ -43,6 +43,32 @@ pub struct Plan<const D: usize> {
     pub sources: Vec<Source<D>>,
     /// Outflows.
     pub sinks: Vec<Sink<D>>,
+    /// Moments of walls and gates that somebody reads.
+    pub moments: Vec<Moment<D>>,
+}
+
+/// A moment of what the material pushes a wall or gate with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment<const D: usize> {
+    /// Index into the groups of wall points.
+    pub group: u16,
+    /// The point that it is taken about [m].
+    pub about: Vector<D>,
+}
+
+impl<const D: usize> Moment<D> {
+    /// Of a push at a place: anticlockwise in the first component in the plane, (x - about) x push in space.
+    #[must_use]
+    pub fn of(&self, place: &Vector<D>, push: &Vector<D>) -> Vector<D> {
+        let arm = sub(place, &self.about);
+        if D == 3 {
+            let three = |v: &Vector<D>| std::array::from_fn(|k| v[k]);
+            let whole = cross(&three(&arm), &three(push));
+            return std::array::from_fn(|k| whole[k]);
+        }
+        let turning = arm[0] * push[1] - arm[1] * push[0];
+        std::array::from_fn(|k| if k == 0 { turning } else { 0.0 })
+    }
 }
 
 /// Inputs over one internal step.

@@ -63,6 +63,11 @@ impl<const D: usize> Solver<D> {
                     let borne = &mut borne[push.group as usize];
                     *borne = add(borne, &push.impulse);
                 }
+                let place = &state.grains.position[pushing.i];
+                for push in &pushes {
+                    let on_wall = scale(-1.0, &push.impulse);
+                    self.add_moments(&mut state.impulse, push.group, (place, &on_wall));
+                }
             }
         }
         let rubbed = self.add_friction_reactions(state, dt, &read);
@@ -80,6 +85,22 @@ impl<const D: usize> Solver<D> {
             };
             for k in 0..D {
                 state.impulse[n][k] -= borne[k] - share * left[k];
+            }
+        }
+    }
+
+    /// Adds what a particle at a place pushes a wall with to the moments of it that somebody reads: what angular momentum the
+    /// material gets, and not, with friction half a spacing further out, more.
+    pub(super) fn add_moments(
+        &self,
+        impulse: &mut [Vector<D>],
+        group: u16,
+        (place, push): (&Vector<D>, &Vector<D>),
+    ) {
+        let behind_forces = impulse.iter_mut().skip(self.walls.groups.len());
+        for (sum, moment) in behind_forces.zip(&self.moments) {
+            if moment.group == group {
+                *sum = add(sum, &moment.of(place, push));
             }
         }
     }

@@ -64,6 +64,7 @@ pub(super) fn plan<const D: usize>(
         spins: Vec::new(),
         sources: Vec::new(),
         sinks: Vec::new(),
+        moments: Vec::new(),
         friction_goes_on: false,
     }
 }

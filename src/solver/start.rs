@@ -98,6 +98,7 @@ impl<const D: usize> Solver<D> {
             has_streams: plan.sources.iter().any(|s| s.piston.is_some()),
             sources: plan.sources,
             sinks: plan.sinks,
+            moments: plan.moments,
             workers: Arc::new(Workers::new(threads)),
             arch: Arch::detect(),
             stays_awake: needs.stays_awake,

@@ -191,6 +191,8 @@ impl<const D: usize> Solver<D> {
                     for k in 0..D {
                         state.impulse[group][k] += if read { share * push[k] } else { 0.0 };
                     }
+                    let (place, push) = (&state.grains.position[row.i], scale(share, &push));
+                    self.add_moments(&mut state.impulse, group as u16, (place, &push));
                 }
             }
         }
@@ -248,9 +250,12 @@ impl<const D: usize> Solver<D> {
                 }
                 let bearers = self.friction_bearers(state, c);
                 for (group, share) in bearers.filter(|(group, _)| read[usize::from(*group)]) {
+                    let push = scale(dt * share, &push);
                     for k in 0..D {
-                        state.impulse[usize::from(group)][k] += dt * share * push[k];
+                        state.impulse[usize::from(group)][k] += push[k];
                     }
+                    let place = &state.grains.position[row.i];
+                    self.add_moments(&mut state.impulse, group, (place, &push));
                 }
             }
         }

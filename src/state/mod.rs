@@ -30,7 +30,7 @@ pub struct State<const D: usize> {
     pub inflows: Vec<InflowState>,
     /// Mass each outflow has taken [kg].
     pub drained: Vec<f64>,
-    /// Impulse on each wall, then each gate, over the last advance [N s].
+    /// Impulse on each wall, then each gate, over the last advance [N s]; then the moments of the plan [N m s].
     #[serde(with = "flat")]
     pub impulse: Vec<Vector<D>>,
     /// Mass at the start [kg].
@@ -60,10 +60,10 @@ pub struct RestState<const D: usize> {
     pub asleep: bool,
     /// Time of those steps [s].
     pub quiet_time: f64,
-    /// Impulse of those steps on each wall, then each gate [N s].
+    /// Impulse of those steps, as the state has it.
     #[serde(with = "flat")]
     pub impulse: Vec<Vector<D>>,
-    /// Mean force of the window before on each wall, then each gate [N]; empty if that was not quiet. Asleep: of the last one.
+    /// Mean force of the window before on each wall, then each gate [N], then moments [N m]; empty if that was not quiet. Asleep: of the last one.
     #[serde(with = "flat")]
     pub force: Vec<Vector<D>>,
 }

@@ -17,7 +17,7 @@ pub(super) fn gauges(
     let gauges = scene.gauges.iter();
     gauges
         .filter_map(|gauge| match &gauge.kind {
-            GaugeKind::Force { on } => {
+            GaugeKind::Force { on, .. } => {
                 let axes = ["x", "y", "z"].into_iter();
                 Some((*on, axes.filter_map(|a| handle(&gauge.name, a)).collect()))
             }

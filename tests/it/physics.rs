@@ -22,6 +22,7 @@ mod layers;
 mod leaks;
 mod lips;
 mod meeting;
+mod moments;
 mod moving_walls;
 mod packing;
 mod paper_a;

@@ -266,7 +266,7 @@ fn gauge_kind(scene: &Scene, kind: &GaugeKind) -> String {
         GaugeKind::Depth { .. } => "depth at a place".to_owned(),
         GaugeKind::Profile { count, .. } => format!("depth at {count} places"),
         GaugeKind::Discharge { .. } => "discharge through a section".to_owned(),
-        GaugeKind::Force { on } => match on {
+        GaugeKind::Force { on, .. } => match on {
             ForceTarget::Wall(wall) => format!("force on wall {}", scene.walls[*wall].name),
             ForceTarget::Gate(gate) => format!("force on gate {}", scene.gates[*gate].name),
         },

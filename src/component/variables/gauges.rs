@@ -4,6 +4,7 @@ use super::ValueKind;
 use super::rows::{Row, Source};
 use crate::math::Vector;
 use crate::scene::{Gauge, GaugeKind, PressureQuantity, Scene};
+use crate::units::shown;
 
 /// Rows of the gauge at this place of the scene's list.
 pub(super) fn rows(scene: &Scene, place: usize, gauge: &Gauge) -> Vec<Row> {
@@ -18,7 +19,7 @@ pub(super) fn rows(scene: &Scene, place: usize, gauge: &Gauge) -> Vec<Row> {
             count, length, up, ..
         } => this.profile(*count, *length, up),
         GaugeKind::Discharge { .. } => this.discharge(),
-        GaugeKind::Force { .. } => this.force(),
+        GaugeKind::Force { about, .. } => this.force(*about),
         GaugeKind::Pressure { quantity, .. } => vec![this.pressure(*quantity)],
         GaugeKind::Velocity { .. } => this.velocity(),
         GaugeKind::InterfaceStress { .. } => vec![this.shear_stress()],
@@ -103,10 +104,28 @@ impl Gauged<'_> {
         ]
     }
 
-    fn force(&self) -> Vec<Row> {
-        self.along_axes("force", "N", |axis| {
+    fn force(&self, about: Option<Vector<3>>) -> Vec<Row> {
+        let mut rows = self.along_axes("force", "N", |axis| {
             format!("force of the material along {axis}, mean over the last step,")
-        })
+        });
+        let Some(about) = about else {
+            return rows;
+        };
+        let axes = self.scene.dimension.axes();
+        let point = about[..axes].iter().map(|c| shown(*c));
+        let point = point.collect::<Vec<_>>().join(", ");
+        if axes == 2 {
+            let text =
+                format!("its moment about [{point}] m, anticlockwise, mean over the last step,");
+            rows.push(self.reading("moment", "N.m", axes, &text));
+            return rows;
+        }
+        rows.extend(["x", "y", "z"].into_iter().enumerate().map(|(k, axis)| {
+            let text =
+                format!("its moment about [{point}] m round {axis}, mean over the last step,");
+            self.reading(&format!("moment_{axis}"), "N.m", axes + k, &text)
+        }));
+        rows
     }
 
     fn velocity(&self) -> Vec<Row> {

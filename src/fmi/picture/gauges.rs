@@ -46,7 +46,7 @@ impl Pen<'_, '_> {
                 self.line(&corners, true, dotted, "discharge through this section");
                 corners[1]
             }
-            GaugeKind::Force { on } => self.force(*on, scene),
+            GaugeKind::Force { on, .. } => self.force(*on, scene),
             GaugeKind::Pressure { at, .. } => {
                 let at = self.svg.view.place(*at);
                 self.dot(at, "pressure at this point");

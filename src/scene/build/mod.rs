@@ -14,13 +14,13 @@ mod walls;
 
 use crate::boundary::{Plate, WallPoints};
 use crate::math::{Geometry, Vector};
-use crate::solver::{Periodic, Plan, Scheme, Sink};
+use crate::solver::{Moment, Periodic, Plan, Scheme, Sink};
 use crate::state::State;
 
 use super::elements::elements;
 use super::footing::Support;
 use super::ghosts::ghost_depth;
-use super::{Dimension, Point, Scene};
+use super::{Dimension, ForceTarget, Point, Scene};
 use inflows::{piston, source};
 use joins::{Standing, join_boxes};
 use memory::check_memory;
@@ -38,6 +38,18 @@ pub(crate) use walls::rigid_motion;
 #[must_use]
 pub fn narrow<const D: usize>(point: &Point) -> Vector<D> {
     std::array::from_fn(|k| point[k])
+}
+
+/// Moments that gauges read, in the gauges' order; groups of wall points are walls, then gates.
+fn moments<const D: usize>(scene: &Scene) -> Vec<Moment<D>> {
+    let moment = |(on, about): (ForceTarget, Point)| Moment {
+        group: match on {
+            ForceTarget::Wall(wall) => wall,
+            ForceTarget::Gate(gate) => scene.walls.len() + gate,
+        } as u16,
+        about: narrow(&about),
+    };
+    scene.moments().map(moment).collect()
 }
 
 /// Solver plan and start state of a scene whose dimension is D.
@@ -103,6 +115,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         spins,
         sources,
         sinks,
+        moments: moments(scene),
     };
     check_overlap(scene, &plan, &state)?;
     Ok((plan, state))

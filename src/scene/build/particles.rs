@@ -73,7 +73,7 @@ pub(super) fn state<const D: usize>(
         gates,
         inflows: vec![InflowState::default(); scene.inflows.len()],
         drained: vec![0.0; scene.outflows.len()],
-        impulse: vec![[0.0; D]; scene.walls.len() + scene.gates.len()],
+        impulse: vec![[0.0; D]; scene.walls.len() + scene.gates.len() + scene.moments().count()],
         steps: 0,
         iterations: 0,
         step_size: 0.0,

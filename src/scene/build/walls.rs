@@ -165,7 +165,7 @@ pub(in crate::scene) fn group(
     let wants_force = scene
         .gauges
         .iter()
-        .any(|g| matches!(g.kind, GaugeKind::Force { on } if on == target));
+        .any(|g| matches!(g.kind, GaugeKind::Force { on, .. } if on == target));
     GroupSpec {
         free_slip: slip != Slip::NoSlip,
         friction: slip.friction(),

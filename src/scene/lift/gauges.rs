@@ -5,7 +5,7 @@ use super::faces::example_of_span;
 use super::full_names::full_names;
 use crate::math::{dot, length, sub};
 use crate::scene::raw::{
-    At, Coordinates, Entry, Length, Place, Ratio, RawFront, RawGauge, RawProfile,
+    At, Coordinates, Entry, Length, Place, Ratio, RawFront, RawGauge, RawProfile, SchemeWord,
 };
 use crate::scene::types::{ForceTarget, Gauge, GaugeKind, Point};
 
@@ -48,7 +48,11 @@ impl Lift<'_> {
             RawGauge::Force(raw) => {
                 let on = raw.on.as_ref()?;
                 let on = self.force_target(&on.value.0, &on.place)?;
-                Some(GaugeKind::Force { on })
+                let about = match &raw.about {
+                    None => None,
+                    Some(at) => Some(self.pivot(at)?),
+                };
+                Some(GaugeKind::Force { on, about })
             }
             RawGauge::Pressure(raw) => {
                 let at = self.point(raw.at.as_ref()?)?;
@@ -258,6 +262,36 @@ impl Lift<'_> {
     }
 
     /// `wall.NAME` or `gate.NAME`.
+    /// Where a moment is taken about.
+    fn pivot(&mut self, at: &At<Coordinates<Length>>) -> Option<Point> {
+        let scheme = self.raw.numerics.as_ref();
+        let scheme = scheme.and_then(|n| Some(n.value.scheme.as_ref()?.value));
+        let refused = if self.axisymmetric() {
+            Some((
+                "in an axisymmetric scene",
+                "the moment of a ring about any point of its axis is 0",
+            ))
+        } else if scheme.is_some_and(|s| s != SchemeWord::Implicit) {
+            Some((
+                "with a reference scheme",
+                "moments come with scheme = \"implicit\"",
+            ))
+        } else {
+            None
+        };
+        if let Some((found, allowed)) = refused {
+            self.problems.report(
+                &at.place,
+                format!("a point for a moment {found}"),
+                allowed,
+                "delete about",
+            );
+            return None;
+        }
+        // An axle may be outside of the domain.
+        self.vector(at)
+    }
+
     fn force_target(&mut self, text: &str, place: &Place) -> Option<ForceTarget> {
         let raw = self.raw;
         match text.split_once('.') {

@@ -82,6 +82,8 @@ table! {
     RawForce {
         /// The wall or gate: wall.NAME or gate.NAME.
         required on: Text;
+        /// The moment about this point, too: a hinge, an axle. It stays where it is, whatever moves. Not in axisymmetric scenes, and with scheme "implicit" only.
+        optional about: Coordinates<Length>;
     }
 }
 

@@ -52,6 +52,8 @@ pub enum GaugeKind {
     Force {
         /// The wall or gate.
         on: ForceTarget,
+        /// The point that its moment is taken about, if it is [m].
+        about: Option<Point>,
     },
     /// Pressure at a point, that of a linear fit to particles [Pa].
     Pressure {
