@@ -8,7 +8,7 @@
 //!
 //!   D = rho |K (a - a*)| / (2 |S|),   S = sum_walls g_iw,                                                   (W8)
 //!
-//! 0.8 and 0.4 of what stress changes over a spacing in the first two rows. They yield as a cell does through which stress changes
+//! |S| added up over faces, as between two walls it would cancel: 0.8 and 0.4 of what stress changes over a spacing in the first two rows. They yield as a cell does through which stress changes
 //! from tau - D to tau + D: at the mean of the law's rates. A layer as a whole then slides where the wall's stress is the yield stress
 //! and not before, and fast flow, where all of the cell yields, is what it was but for D^2.
 //!
@@ -16,8 +16,7 @@
 //!
 //! Of dry grains what the wall's stress is more is rho |K (a - a* - b)|, b of (W14), and such a row yields at the mean of the rates of
 //! its law from (tau - c - D)/p to (tau - c + D)/p. D has no sign, and waves of pressure add to it. Without images grains see walls from
-//! three rows, where K is 1e-3 and D, which goes as K over |S|, largest: it fades with K there. |S| is added up over faces, which between two
-//! walls would cancel.
+//! three rows, where K is 1e-3 and D, which goes as K over |S|, largest: it fades with K there.
 
 use crate::math::{apply, norm, sub, trace};
 use crate::state::State;
