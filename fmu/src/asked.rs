@@ -24,7 +24,7 @@ pub(crate) enum Asked<'a> {
 
 /// A text that was set, as messages and logs may show it: Zenoh's configuration may hold a password.
 pub(crate) fn shown<'a>(name: &str, text: &'a str) -> Cow<'a, str> {
-    if name == "zenoh.config" && text.trim_start().starts_with('{') {
+    if name == "zenoh.config" && text.contains('{') {
         return format!("{{{} characters}}", text.chars().count()).into();
     }
     text.into()
@@ -38,6 +38,8 @@ mod tests {
     fn a_password_in_a_configuration_is_shown_nowhere() {
         let json = r#"{transport: {auth: {usrpwd: {user: "plc", password: "geheim"}}}}"#;
         assert_eq!(shown("zenoh.config", json), "{64 characters}");
+        let commented = format!("// ours\n{json}");
+        assert_eq!(shown("zenoh.config", &commented), "{72 characters}");
         assert_eq!(
             shown("zenoh.config", "/etc/zenoh.json5"),
             "/etc/zenoh.json5"

@@ -140,10 +140,10 @@ fn meetings(scene: &Scene) -> Vec<String> {
     meetings
         .map(|meeting| {
             format!(
-                "note: wall {} goes into wall {} from t = {} s on: walls do not stop each other, and what is between them is squeezed.",
+                "note: wall {} is a spacing deep in wall {} at t = {} s: walls do not stop each other, and what comes between them is squeezed.",
                 scene.walls[meeting.wall].name,
                 scene.walls[meeting.with].name,
-                rounded(meeting.time, 3),
+                to_three_digits(meeting.time),
             )
         })
         .collect()
@@ -151,6 +151,14 @@ fn meetings(scene: &Scene) -> Vec<String> {
 
 fn length(metres: f64) -> String {
     format!("{} m", rounded(metres, 6))
+}
+
+/// Of what may be small.
+fn to_three_digits(value: f64) -> f64 {
+    rounded(
+        value,
+        2 - value.abs().max(1e-300).log10().floor().min(2.0) as i32,
+    )
 }
 
 /// A number with so many decimals at most.
@@ -271,6 +279,44 @@ mod tests {
         };
         let part = "gate sluice: between from and wall bed 0.02 m stay open";
         assert!(note.contains(part), "{note}");
+    }
+
+    #[test]
+    fn what_gets_into_the_way_of_something_else_is_told() {
+        let with = |more: &str| {
+            let text = format!(
+                "name = \"b\"\n[domain]\nlower = [0, -0.2]\nupper = [1, 1]\n[numerics]\nspacing = 0.01\n\
+                 [materials.water]\nlaw = \"fluid\"\npreset = \"water\"\n\
+                 [bodies.b]\nmaterial = \"water\"\nbox = {{ lower = [0, 0.1], upper = [0.3, 0.2] }}\n\
+                 [walls.tank]\npolyline = [[0, 0.6], [0, 0], [0.5, 0], [0.5, 0.6]]\n{more}\n\
+                 [run]\nstep = 0.01\nuntil = 1\n",
+            );
+            remarks(&crate::scene::parse("b", &text).unwrap_or_else(|e| panic!("{e}")))
+        };
+        for (more, said) in [
+            (
+                "[gates.a]\nfrom = [0.4, 0]\nto = [0.4, 0.2]\n[gates.c]\nfrom = [0.42, 0]\nto = [0.42, 0.3]",
+                "gates a and c: their shut plates share room",
+            ),
+            (
+                "[gates.a]\nfrom = [0.2, 0]\nto = [0.2, 0.1]",
+                "gate a: body b goes on beyond `to`",
+            ),
+            (
+                "[walls.bar]\nbox = { lower = [0.36, 0.3], upper = [0.42, 0.4] }\nmotion = \"rigid\"\nvelocity = [1, 0]",
+                "wall bar is a spacing deep in wall tank at t = 0.0",
+            ),
+        ] {
+            let told = with(more);
+            let [note] = &told[..] else {
+                panic!("{more}: {told:?}");
+            };
+            assert!(note.contains(said), "{note}");
+        }
+        assert_eq!(
+            [123.4, 0.1234, 1.234e-4].map(to_three_digits),
+            [123.0, 0.123, 1.23e-4]
+        );
     }
 
     #[test]

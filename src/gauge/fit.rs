@@ -3,13 +3,17 @@
 //! missing.
 //!
 //! Symbols: w = V W(|x - x_j|), d = x_j - x, bars means with w, C = mean (d - d_bar)(d - d_bar), b = C^-1 mean (d - d_bar) f;
-//! f(x) = f_bar - b . d_bar. Where too few particles tell b it is left out.
+//! f(x) = f_bar - b . d_bar. Where too few particles tell b, or all lie far on one side, it is left out.
 
 use super::{Validity, View};
 use crate::math::{add_outer, apply, determinant, dot, inverse, sub};
 
 /// Shepard sum below which no mean is given: less than a quarter of a lone grain's weight at its own centre.
 const DRY: f64 = 0.05;
+
+/// Square of the distance from the particles' mean, over their spread along the way to it, beyond which a line is not trusted. Between the
+/// floor and the first row it is about 1, at a place that the first particles come to 10.
+const FURTHEST: f64 = 4.0;
 
 /// Values at a place, of what `of` says of a particle, and of a ring's image across the axis if it is true.
 ///
@@ -71,5 +75,8 @@ fn fitted<const D: usize, const N: usize>(
         return mean;
     }
     let unspread = inverse(&spread);
+    if dot(&place, &apply(&unspread, &place)) > FURTHEST {
+        return mean;
+    }
     std::array::from_fn(|n| mean[n] - dot(&apply(&unspread, &together[n]), &place))
 }

@@ -126,19 +126,26 @@ impl<const D: usize> Solid<D> {
                 points,
                 closed,
                 depth,
-            } => depth_behind(points, *closed, at).is_some_and(|d| d > slack && d < *depth),
+            } => depth_behind(points, *closed, at, slack).is_some_and(|d| d > slack && d < *depth),
         }
     }
 }
 
-/// How far a place lies behind a chain, from the nearest of its segments [m]; `None` before it and beyond its free ends.
-fn depth_behind<const D: usize>(points: &[[f64; D]], closed: bool, at: &[f64; D]) -> Option<f64> {
+/// How far a place lies behind a chain, from the nearest of its segments [m]; `None` before it and beyond its free ends, or nearer than
+/// `slack` to beyond them.
+fn depth_behind<const D: usize>(
+    points: &[[f64; D]],
+    closed: bool,
+    at: &[f64; D],
+    slack: f64,
+) -> Option<f64> {
     let count = points.len() - usize::from(!closed);
     let mut best: Option<Seen> = None;
     for k in 0..count {
         let seen = seen_from(&points[k], &points[(k + 1) % points.len()], at)?;
-        let free = (!closed && k == 0 && seen.share < 0.0)
-            || (!closed && k + 1 == count && seen.share > 1.0);
+        let slack = slack / seen.length;
+        let free = (!closed && k == 0 && seen.share < slack)
+            || (!closed && k + 1 == count && seen.share > 1.0 - slack);
         let seen = Seen { free, ..seen };
         if best.as_ref().is_none_or(|b| seen.is_nearer_than(b)) {
             best = Some(seen);
@@ -155,6 +162,8 @@ struct Seen {
     right: f64,
     /// Foot of the place along the segment, 0 to 1 between its ends [1].
     share: f64,
+    /// Length of the segment [m].
+    length: f64,
     /// Whether the nearest point is an end where the chain does not go on.
     free: bool,
 }
@@ -184,6 +193,7 @@ fn seen_from<const D: usize>(a: &[f64; D], b: &[f64; D], at: &[f64; D]) -> Optio
         away: (to[0] - foot * way[0]).hypot(to[1] - foot * way[1]),
         right: (to[0] * way[1] - to[1] * way[0]) / length,
         share,
+        length,
         free: false,
     })
 }
@@ -211,8 +221,9 @@ mod tests {
             ([-0.1, -0.2], true),
             ([2.1, 0.9], true),
             ([1.0, -0.5], false),
-            // Beyond the free end of a side.
+            // Beyond the free end of a side, and level with it.
             ([-0.1, 1.1], false),
+            ([-0.1, 1.0], false),
         ] {
             assert_eq!(tank.holds(&at, 1e-6), inside, "{at:?}");
         }

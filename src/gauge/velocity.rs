@@ -33,6 +33,8 @@ mod tests {
     use super::super::Validity;
     use super::super::view::bed::Bed;
     use super::*;
+    use crate::math::Geometry;
+    use crate::state::CellGrid;
 
     /// The bed's particles move at (3 + 2 y, x, 0), whatever the row a point is near.
     #[test]
@@ -55,6 +57,44 @@ mod tests {
             reading.values[2],
         ];
         assert!(off.iter().all(|d| d.abs() < 1e-9), "{reading:?}");
+    }
+
+    /// v = (2 r, z) in rings: images across the axis move the other way along the radius.
+    #[test]
+    fn rings_move_apart_on_both_sides_of_their_axis() {
+        let bed = Bed::<2>::with_side_wall(1.6, 12);
+        for at in [[0.003, 0.05], [0.011, 0.07]] {
+            let reading = bed.look(|view| {
+                let velocity: Vec<_> = view.position.iter().map(|x| [2.0 * x[0], x[1]]).collect();
+                VelocityProbe { at }.sample(&View {
+                    velocity: &velocity,
+                    geometry: Geometry::Axisymmetric,
+                    solid: &CellGrid::build(&[], view.kernel.support(), &[None; 2]),
+                    solids: &[],
+                    ..*view
+                })
+            });
+            let off = [reading.values[0] - 2.0 * at[0], reading.values[1] - at[1]];
+            assert!(off.iter().all(|d| d.abs() < 1e-9), "{at:?}: {reading:?}");
+        }
+    }
+
+    /// Where material has just arrived the line through it would say anything.
+    #[test]
+    fn what_lies_far_on_one_side_is_read_as_its_mean() {
+        let bed = Bed::<2>::new(1.6, 4, 0.1).keep(|x| (0.1..0.2).contains(&x[0]));
+        for ahead in [0.004, 0.01, 0.016, 0.02] {
+            let at = [0.2 + ahead, 0.015];
+            let reading = bed.look(|view| VelocityProbe { at }.sample(view));
+            let [u, v] = reading.values[..] else {
+                panic!("{reading:?}");
+            };
+            let inside = (2.9..3.2).contains(&u) && (0.1..0.2 + ahead + 1e-9).contains(&v);
+            assert!(
+                reading.validity != Validity::Valid || inside,
+                "{ahead}: {reading:?}"
+            );
+        }
     }
 
     #[test]

@@ -175,7 +175,7 @@ pub enum ReadError {
     },
     /// It was cut before what all that follows is read by.
     #[error(
-        "log {path} ends before its scene, and nothing of it can be shown or run again: {ending}"
+        "log {path} ends before its scene, by which its figures have their names and without which it cannot be run again: {ending}"
     )]
     BeforeScene {
         /// The file.

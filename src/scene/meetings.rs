@@ -16,8 +16,9 @@ pub struct Meeting {
     pub time: f64,
 }
 
-/// Poses that are looked at of a wall that moves, however long the run is.
-const MOST_POSES: f64 = 20_000.0;
+/// Places of walls that move times pieces of walls that stand, over all poses that are looked at: some tenths of a second. Longer ways are
+/// looked at in longer steps.
+const MOST_TESTS: f64 = 1e7;
 
 impl Scene {
     /// Pairs of gates whose shut plates share room, more than half a spacing across: indices into [`Scene::gates`].
@@ -66,7 +67,7 @@ impl Scene {
         let middle = edges[1..]
             .iter()
             .fold(corner, |x, edge| add(&x, &scale(0.5, edge)));
-        let place = add(&middle, &past);
+        let place = self.in_period(add(&middle, &past));
         let wide: Point = std::array::from_fn(|k| place.get(k).copied().unwrap_or(0.0));
         self.bodies.iter().position(|body| {
             let up = self.up();
@@ -91,24 +92,41 @@ impl Scene {
             .map(|(n, wall)| (n, solid(&wall.geometry, dp)))
             .collect();
         let moving = self.walls.iter().enumerate().filter(|(_, w)| w.rigid);
+        let movers = moving.clone().count();
         let first = moving.filter_map(|(n, wall)| {
             let motion = rigid_motion::<D>(&wall.velocity, wall.rotation.as_ref());
             let places = rim::<D>(&wall.geometry, dp);
             let arms = places.iter().map(|x| norm(&sub(x, &motion.centre)));
             let speed = norm(&motion.velocity) + motion.rate.abs() * arms.fold(0.0, f64::max);
-            let poses = (self.run.until * speed / (0.5 * dp)).ceil().min(MOST_POSES);
-            let meets = |time: f64, with: &Solid<D>| {
-                let (turn, centre) = (motion.rotation_at(time), motion.centre_at(time));
-                places.iter().any(|x| {
-                    let arm = apply(&turn, &sub(x, &motion.centre));
-                    with.holds(&self.in_period(add(&centre, &arm)), dp)
-                })
+            // What only turns is back after a turn.
+            let only_turns = motion.velocity == [0.0; D] && motion.rate != 0.0;
+            let turn = std::f64::consts::TAU / motion.rate.abs();
+            let until = if only_turns {
+                turn.min(self.run.until)
+            } else {
+                self.run.until
             };
+            let places_at = |time: f64| -> Vec<Vector<D>> {
+                let (turn, centre) = (motion.rotation_at(time), motion.centre_at(time));
+                let arms = places.iter().map(|x| sub(x, &motion.centre));
+                arms.map(|arm| self.in_period(add(&centre, &apply(&turn, &arm))))
+                    .collect()
+            };
+            let meets =
+                |places: &[Vector<D>], with: &Solid<D>| places.iter().any(|x| with.holds(x, dp));
+            let start = places_at(0.0);
             let apart: Vec<&(usize, Solid<D>)> =
-                standing.iter().filter(|(_, s)| !meets(0.0, s)).collect();
+                standing.iter().filter(|(_, s)| !meets(&start, s)).collect();
+            if apart.is_empty() {
+                return None;
+            }
+            let pieces: usize = apart.iter().map(|(_, s)| pieces(s)).sum();
+            let most = MOST_TESTS / (movers * places.len() * pieces).max(1) as f64;
+            let poses = (until * speed / (0.5 * dp)).ceil().min(most.ceil());
             (1..=poses as u64).find_map(|pose| {
-                let time = self.run.until * pose as f64 / poses;
-                let with = apart.iter().find(|(_, s)| meets(time, s))?.0;
+                let time = until * pose as f64 / poses;
+                let places = places_at(time);
+                let with = apart.iter().find(|(_, s)| meets(&places, s))?.0;
                 Some(Meeting {
                     wall: n,
                     with,
@@ -131,6 +149,14 @@ impl Scene {
             *x = lower + (*x - lower).rem_euclid(domain.upper[k] - lower);
         }
         x
+    }
+}
+
+/// Segments of a chain; 1 of all else.
+fn pieces<const D: usize>(solid: &Solid<D>) -> usize {
+    match solid {
+        Solid::Chain { points, .. } => points.len(),
+        Solid::Behind { .. } | Solid::Block { .. } => 1,
     }
 }
 
@@ -254,7 +280,7 @@ mod tests {
     #[test]
     fn a_wall_that_drives_into_one_that_stands_is_found_with_the_time() {
         let meet = |wall: &str| {
-            let scene = tank(ASIDE, &format!("[walls.bar]\n{wall}\nmotion = \"rigid\""));
+            let scene = tank(ASIDE, &format!("[walls.bar]\nmotion = \"rigid\"\n{wall}"));
             scene.meetings()
         };
         let bar = "box = { lower = [0.3, 0.3], upper = [0.36, 0.4] }";
@@ -272,6 +298,9 @@ mod tests {
         // 0.15 m to the side's face and a spacing into it.
         assert!((time - 0.3).abs() < 0.011, "{time}");
         for free in [
+            // Up between two ledges, flush with both, and down onto the tank's rims.
+            format!("{bar}\nvelocity = [0, 0.2]\n[walls.a]\npolyline = [[0.3, 0.5], [0.1, 0.5]]\n[walls.b]\npolyline = [[0.48, 0.5], [0.36, 0.5]]"),
+            "box = { lower = [0, 0.8], upper = [0.5, 0.85] }\nvelocity = [0, -0.1]".to_owned(),
             format!("{bar}\nvelocity = [0, 0.5]"),
             // Not within the run.
             format!("{bar}\nvelocity = [0.06, 0]"),

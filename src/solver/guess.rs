@@ -2,7 +2,8 @@
 //! that changed in the last step.
 //!
 //! The share is what would have been best in the step before: near 1 where the flow speeds up or slows down evenly, -1/2
-//! where accelerations are noise. Only the count of iterations depends on it; the solve ends at the same tolerance.
+//! where accelerations are noise. The count of iterations depends on it, and where steps have two acoustic ones the plastic rate that the
+//! yield's first iteration starts from; the solve ends at the same tolerance.
 
 use crate::math::{Vector, dot, sub};
 use crate::state::State;

@@ -8,8 +8,8 @@
 //!
 //!   D = rho |K (a - a*)| / (2 |S|),   S = sum_walls g_iw,                                                   (W8)
 //!
-//! |S| added up over faces, as between two walls it would cancel: 0.8 and 0.4 of what stress changes over a spacing in the first two rows. They yield as a cell does through which stress changes
-//! from tau - D to tau + D: at the mean of the law's rates. A layer as a whole then slides where the wall's stress is the yield stress
+//! |S| added up over faces without slip, as between two walls it would cancel: 0.8 and 0.4 of what stress changes over a spacing in the
+//! first two rows. They yield as a cell does through which stress changes from tau - D to tau + D: at the mean of the law's rates. A layer as a whole then slides where the wall's stress is the yield stress
 //! and not before, and fast flow, where all of the cell yields, is what it was but for D^2.
 //!
 //! a - a* is that of the last step. Exact yield only.

@@ -89,12 +89,13 @@ pub enum ZenohConfig {
 }
 
 impl ZenohConfig {
-    /// What a parameter says: JSON5 if it begins with a brace, else the path of a file; none if it is blank.
+    /// What a parameter says: JSON5 if it has a brace, else the path of a file; none if it is blank.
     #[must_use]
     pub fn read(text: &str) -> Option<Self> {
-        match text.trim_start().chars().next()? {
-            '{' => Some(Self::Text(text.to_owned())),
-            _ => Some(Self::File(PathBuf::from(text))),
+        match text.trim().is_empty() {
+            true => None,
+            false if text.contains('{') => Some(Self::Text(text.to_owned())),
+            false => Some(Self::File(PathBuf::from(text))),
         }
     }
 }

@@ -120,8 +120,33 @@ fn read(options: &ServeOptions) -> Result<Config, BusError> {
     };
     read.map_err(|error| BusError::Config {
         file: source(options),
-        reason: words(error),
+        reason: match &options.config {
+            Some(ZenohConfig::Text(text)) if may_hold_secrets(text) => hidden(&words(error)),
+            _ => words(error),
+        },
     })
+}
+
+/// Whether a text has keys with passwords or private keys beside them.
+fn may_hold_secrets(text: &str) -> bool {
+    ["password", "usrpwd", "private_key", "base64"]
+        .iter()
+        .any(|key| text.contains(key))
+}
+
+/// What may be told of what Zenoh says of a text with secrets, which it quotes: where it stopped.
+fn hidden(words: &str) -> String {
+    let is_apart = |c: char| !(c.is_ascii_digit() || c == ':');
+    let place = words.split(is_apart).find_map(|part| {
+        let (line, column) = part.split_once(':')?;
+        let (line, column): (u32, u32) = (line.parse().ok()?, column.parse().ok()?);
+        Some(format!(", near line {line}, column {column}"))
+    });
+    format!(
+        "it is not one that Zenoh takes{}; Zenoh's words are left out, since they quote the text, which may hold a password: \
+         `sandgate serve CASE --zenoh-config FILE` with the text in a file shows them",
+        place.unwrap_or_default()
+    )
 }
 
 /// Zenoh reads a file to its end, which devices and pipes need not have.
@@ -193,4 +218,33 @@ pub(super) fn insert(config: &mut Config, key: &str, value: &str) -> Result<(), 
             doing: format!("configure {key} as {value}"),
             reason: words(error),
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wrong_with_a_text_is_told_without_the_secrets_in_it() {
+        let told = |text: &str| {
+            let options = ServeOptions {
+                config: ZenohConfig::read(text),
+                ..ServeOptions::default()
+            };
+            read(&options).map(|_| ()).unwrap_err().to_string()
+        };
+        for text in [
+            r#"{transport: {auth: {usrpwd: {user: "plc", password: "geheim}}}}"#,
+            r#"{transport: {auth: {usrpwd: "plc:geheim"}}}"#,
+            "// ours\n{transport: {auth: {usrpwd: {user: 'plc', password: geheim}}}}",
+        ] {
+            let told = told(text);
+            assert!(
+                !told.contains("geheim") && told.contains("left out"),
+                "{told}"
+            );
+        }
+        let open = told("{listen: 7}");
+        assert!(open.contains('7') && !open.contains("left out"), "{open}");
+    }
 }

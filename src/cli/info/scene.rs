@@ -266,10 +266,17 @@ fn gauge_kind(scene: &Scene, kind: &GaugeKind) -> String {
         GaugeKind::Depth { .. } => "depth at a place".to_owned(),
         GaugeKind::Profile { count, .. } => format!("depth at {count} places"),
         GaugeKind::Discharge { .. } => "discharge through a section".to_owned(),
-        GaugeKind::Force { on, .. } => match on {
-            ForceTarget::Wall(wall) => format!("force on wall {}", scene.walls[*wall].name),
-            ForceTarget::Gate(gate) => format!("force on gate {}", scene.gates[*gate].name),
-        },
+        GaugeKind::Force { on, about } => {
+            let what = if about.is_some() {
+                "force and moment on"
+            } else {
+                "force on"
+            };
+            match on {
+                ForceTarget::Wall(wall) => format!("{what} wall {}", scene.walls[*wall].name),
+                ForceTarget::Gate(gate) => format!("{what} gate {}", scene.gates[*gate].name),
+            }
+        }
         GaugeKind::Pressure { .. } => "pressure at a point".to_owned(),
         GaugeKind::Velocity { .. } => "velocity at a point".to_owned(),
         GaugeKind::InterfaceStress { .. } => "shear stress at the top of a material".to_owned(),

@@ -115,14 +115,16 @@ impl Gauged<'_> {
         let point = about[..axes].iter().map(|c| shown(*c));
         let point = point.collect::<Vec<_>>().join(", ");
         if axes == 2 {
-            let text =
-                format!("its moment about [{point}] m, anticlockwise, mean over the last step,");
+            let text = format!(
+                "moment of that force about [{point}] m, anticlockwise, mean over the last step,"
+            );
             rows.push(self.reading("moment", "N.m", axes, &text));
             return rows;
         }
         rows.extend(["x", "y", "z"].into_iter().enumerate().map(|(k, axis)| {
-            let text =
-                format!("its moment about [{point}] m round {axis}, mean over the last step,");
+            let text = format!(
+                "moment of that force about [{point}] m round {axis}, mean over the last step,"
+            );
             self.reading(&format!("moment_{axis}"), "N.m", axes + k, &text)
         }));
         rows

@@ -46,7 +46,7 @@ impl Pen<'_, '_> {
                 self.line(&corners, true, dotted, "discharge through this section");
                 corners[1]
             }
-            GaugeKind::Force { on, .. } => self.force(*on, scene),
+            GaugeKind::Force { on, about } => self.force((*on, *about), scene),
             GaugeKind::Pressure { at, .. } => {
                 let at = self.svg.view.place(*at);
                 self.dot(at, "pressure at this point");
@@ -90,7 +90,7 @@ impl Pen<'_, '_> {
         self.svg.view.place(from)
     }
 
-    fn force(&mut self, on: ForceTarget, scene: &Scene) -> (f64, f64) {
+    fn force(&mut self, (on, about): (ForceTarget, Option<Point>), scene: &Scene) -> (f64, f64) {
         let (what, at) = match on {
             ForceTarget::Wall(i) => {
                 let wall = &scene.walls[i];
@@ -103,6 +103,10 @@ impl Pen<'_, '_> {
         };
         let at = self.svg.view.place(at);
         self.dot(at, &format!("force on {what}"));
+        if let Some(about) = about {
+            let pivot = self.svg.view.place(about);
+            self.dot(pivot, &format!("moment on {what} about this point"));
+        }
         (at.0, at.1 + 32.0)
     }
 

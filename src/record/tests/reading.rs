@@ -1,7 +1,7 @@
 //! What is read back: whole files, files cut at any byte, damaged ones, others, and a wrong account of mass.
 
 use super::*;
-use crate::record::check_mass;
+use crate::record::{RedriveOptions, Table, check_mass, redrive};
 
 #[test]
 fn a_log_reads_back_as_it_was_written() {
@@ -123,4 +123,32 @@ fn a_wrong_account_of_mass_is_found_to_the_last_bit() {
         assert_eq!(found.step, 17);
         assert!(found.to_string().contains("step 17 at 0.17 s"), "{found}");
     }
+}
+
+#[test]
+fn what_ends_before_its_scene_and_what_is_empty_is_told_as_that() {
+    let folder = temp_dir::TempDir::new().unwrap();
+    let bytes = whole(&[line(0)], 2);
+    let refusals = |length: usize| {
+        let path = on_disk(folder.path(), &bytes[..length]);
+        let nobody = &mut |_: f64| {};
+        let table = Table::read(&path, (f64::NEG_INFINITY, f64::INFINITY)).unwrap_err();
+        let redriven = redrive(&path, &RedriveOptions::default(), nobody).map(|_| ());
+        [table.to_string(), redriven.unwrap_err().to_string()]
+    };
+    for (length, why) in [
+        (0, "it is empty"),
+        (5, "it ends within the magic bytes"),
+        (mcap::MAGIC.len() + 20, "ends before its scene"),
+    ] {
+        for told in refusals(length) {
+            assert!(told.contains(why), "{length}: {told}");
+        }
+    }
+    let other = on_disk(folder.path(), b"%PDF-1.7 and more");
+    let told = LogReader::open(&other).err().unwrap().to_string();
+    assert!(
+        told.contains("does not begin with the magic bytes"),
+        "{told}"
+    );
 }

@@ -261,7 +261,6 @@ impl Lift<'_> {
         Some(feet.iter().map(reach).fold(0.0, f64::max))
     }
 
-    /// `wall.NAME` or `gate.NAME`.
     /// Where a moment is taken about.
     fn pivot(&mut self, at: &At<Coordinates<Length>>) -> Option<Point> {
         let scheme = self.raw.numerics.as_ref();
@@ -269,7 +268,7 @@ impl Lift<'_> {
         let refused = if self.axisymmetric() {
             Some((
                 "in an axisymmetric scene",
-                "the moment of a ring about any point of its axis is 0",
+                "force gauges without about: the moment of a ring about any point of its axis is 0",
             ))
         } else if scheme.is_some_and(|s| s != SchemeWord::Implicit) {
             Some((
@@ -292,6 +291,7 @@ impl Lift<'_> {
         self.vector(at)
     }
 
+    /// `wall.NAME` or `gate.NAME`.
     fn force_target(&mut self, text: &str, place: &Place) -> Option<ForceTarget> {
         let raw = self.raw;
         match text.split_once('.') {

@@ -38,7 +38,7 @@ impl Scale {
         short((2.0 * G * self.height).sqrt() + self.speed)
     }
 
-    /// The acoustic bound of default numerics [s].
+    /// The acoustic bound at courant 0.5 and one acoustic step [s].
     pub(super) fn internal_step(&self) -> f64 {
         0.5 * 1.6 * self.spacing / (10.0 * self.expected())
     }

@@ -81,7 +81,6 @@ fn a_drum_is_turned_against_the_weight_that_it_lifts() {
             &[
                 ("spacing = \"4 mm\"", "spacing = \"5 mm\""),
                 ("motion = \"rigid\"", motion.as_str()),
-                ("on = \"wall.drum\"", "on = \"wall.drum\"\nabout = [0, 0]"),
             ],
         );
         let mut unit = Unit::new(&scene);
@@ -101,7 +100,7 @@ fn a_drum_is_turned_against_the_weight_that_it_lifts() {
     }
 }
 
-/// In space each axis has one, a gate's too, and they are in states.
+/// In space each axis has one, and they are in states.
 #[test]
 fn moments_in_space_are_those_of_their_axes() {
     let text = r#"
