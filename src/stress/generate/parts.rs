@@ -170,6 +170,10 @@ pub(super) fn numerics(dice: &mut Dice, scale: &Scale) -> String {
     if dice.chance(0.2) {
         keys.push(("jitter", number(dice.from(0.0, 0.4))));
     }
+    // Dice of their own, so that seeds keep their scenes.
+    if dice.clone().chance(0.25) {
+        keys.push(("friction_into_walls", "true".to_owned()));
+    }
     table("numerics", &keys)
 }
 
