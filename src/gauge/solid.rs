@@ -114,6 +114,17 @@ impl<const D: usize> Solid<D> {
     /// Whether a place lies inside, deeper than `slack` [m]: places on a face are before it, however they are rounded.
     #[must_use]
     pub fn holds(&self, at: &[f64; D], slack: f64) -> bool {
+        // Two chains that meet end to end leave nothing between them.
+        self.holds_from(at, slack, 0.0)
+    }
+
+    /// Whether a place lies inside, at least so deep [m], also from the free ends of a chain: what slides past these does not.
+    #[must_use]
+    pub fn holds_deep(&self, at: &[f64; D], depth: f64) -> bool {
+        self.holds_from(at, depth, depth)
+    }
+
+    fn holds_from(&self, at: &[f64; D], slack: f64, from_ends: f64) -> bool {
         match self {
             Solid::Behind { point, normal } => super::component(at, point, normal) < -slack,
             Solid::Block { corner, edges } => edges.iter().all(|edge| {
@@ -126,26 +137,27 @@ impl<const D: usize> Solid<D> {
                 points,
                 closed,
                 depth,
-            } => depth_behind(points, *closed, at, slack).is_some_and(|d| d > slack && d < *depth),
+            } => depth_behind(points, *closed, at, from_ends)
+                .is_some_and(|d| d > slack && d < *depth),
         }
     }
 }
 
 /// How far a place lies behind a chain, from the nearest of its segments [m]; `None` before it and beyond its free ends, or nearer than
-/// `slack` to beyond them.
+/// `from_ends` to beyond them.
 fn depth_behind<const D: usize>(
     points: &[[f64; D]],
     closed: bool,
     at: &[f64; D],
-    slack: f64,
+    from_ends: f64,
 ) -> Option<f64> {
     let count = points.len() - usize::from(!closed);
     let mut best: Option<Seen> = None;
     for k in 0..count {
         let seen = seen_from(&points[k], &points[(k + 1) % points.len()], at)?;
-        let slack = slack / seen.length;
-        let free = (!closed && k == 0 && seen.share < slack)
-            || (!closed && k + 1 == count && seen.share > 1.0 - slack);
+        let kept = from_ends / seen.length;
+        let free = (!closed && k == 0 && seen.share < kept)
+            || (!closed && k + 1 == count && seen.share > 1.0 - kept);
         let seen = Seen { free, ..seen };
         if best.as_ref().is_none_or(|b| seen.is_nearer_than(b)) {
             best = Some(seen);
@@ -221,12 +233,15 @@ mod tests {
             ([-0.1, -0.2], true),
             ([2.1, 0.9], true),
             ([1.0, -0.5], false),
-            // Beyond the free end of a side, and level with it.
+            // Beyond the free end of a side.
             ([-0.1, 1.1], false),
-            ([-0.1, 1.0], false),
         ] {
             assert_eq!(tank.holds(&at, 1e-6), inside, "{at:?}");
         }
+        // Level with the free end, and below it.
+        let deep = |y: f64| tank.holds_deep(&[-0.2, y], 0.1);
+        assert!(tank.holds(&[-0.2, 1.0], 1e-6) && !deep(1.0) && !deep(0.95) && deep(0.8));
+        assert!(!tank.holds_deep(&[-0.05, 0.5], 0.1));
     }
 
     #[test]

@@ -112,8 +112,9 @@ impl Scene {
                 arms.map(|arm| self.in_period(add(&centre, &apply(&turn, &arm))))
                     .collect()
             };
-            let meets =
-                |places: &[Vector<D>], with: &Solid<D>| places.iter().any(|x| with.holds(x, dp));
+            let meets = |places: &[Vector<D>], with: &Solid<D>| {
+                places.iter().any(|x| with.holds_deep(x, dp))
+            };
             let start = places_at(0.0);
             let apart: Vec<&(usize, Solid<D>)> =
                 standing.iter().filter(|(_, s)| !meets(&start, s)).collect();
