@@ -63,10 +63,12 @@ impl<const D: usize> Solver<D> {
                     let borne = &mut borne[push.group as usize];
                     *borne = add(borne, &push.impulse);
                 }
-                let place = &state.grains.position[pushing.i];
-                for push in &pushes {
-                    let on_wall = scale(-1.0, &push.impulse);
-                    self.add_moments(&mut state.impulse, push.group, (place, &on_wall));
+                if !self.moments.is_empty() {
+                    let place = &state.grains.position[pushing.i];
+                    for push in &pushes {
+                        let on_wall = scale(-1.0, &push.impulse);
+                        self.add_moments(&mut state.impulse, push.group, (place, &on_wall));
+                    }
                 }
             }
         }
