@@ -3,7 +3,7 @@
 //! missing.
 //!
 //! Symbols: w = V W(|x - x_j|), d = x_j - x, bars means with w, C = mean (d - d_bar)(d - d_bar), b = C^-1 mean (d - d_bar) f;
-//! f(x) = f_bar - b . d_bar. Where too few particles tell b, or all lie far on one side, it is left out.
+//! f(x) = f_bar - b . d_bar. Where too few particles tell b, and beyond a free surface, it is left out.
 
 use super::{Validity, View};
 use crate::math::{add_outer, apply, determinant, dot, inverse, sub};
@@ -11,9 +11,9 @@ use crate::math::{add_outer, apply, determinant, dot, inverse, sub};
 /// Shepard sum below which no mean is given: less than a quarter of a lone grain's weight at its own centre.
 const DRY: f64 = 0.05;
 
-/// Square of the distance from the particles' mean, over their spread along the way to it, beyond which a line is not trusted. Between the
-/// floor and the first row it is about 1, at a place that the first particles come to 10.
-const FURTHEST: f64 = 4.0;
+/// Share of what walls leave free around a place that material has to fill for a line to be trusted there: at a free surface it fills half, a
+/// spacing beyond it a tenth, and the line would be drawn out by several times what it is made of.
+const BEYOND: f64 = 0.4;
 
 /// Values at a place, of what `of` says of a particle, and of a ring's image across the axis if it is true.
 ///
@@ -32,7 +32,7 @@ pub(super) fn fit_at<const D: usize, const N: usize>(
         return Err(Validity::Blocked);
     }
     let mut weights = 0.0;
-    let mut near: Vec<(f64, [f64; D], [f64; N])> = Vec::new();
+    let mut near: Vec<Near<D, N>> = Vec::new();
     view.for_each_particle(at, |j, x, r| {
         let weight = view.volume(j) * view.kernel.w(r);
         weights += weight;
@@ -42,15 +42,19 @@ pub(super) fn fit_at<const D: usize, const N: usize>(
     if weights < DRY {
         return Err(Validity::Empty);
     }
-    Ok(fitted(&near, weights, view.spacing))
+    let free = 1.0 - view.solid_around(at).0;
+    let mean = mean(&near, weights);
+    Ok(match weights < BEYOND * free {
+        true => mean.1,
+        false => fitted(&near, weights, mean, view.spacing),
+    })
 }
 
-/// Values at d = 0 of the linear fits to rows of weight, place d [m] and values.
-fn fitted<const D: usize, const N: usize>(
-    near: &[(f64, [f64; D], [f64; N])],
-    weights: f64,
-    spacing: f64,
-) -> [f64; N] {
+/// A particle near a place: its weight w, where it lies from there [m], and its values.
+type Near<const D: usize, const N: usize> = (f64, [f64; D], [f64; N]);
+
+/// Means of places and values.
+fn mean<const D: usize, const N: usize>(near: &[Near<D, N>], weights: f64) -> ([f64; D], [f64; N]) {
     let (mut place, mut mean) = ([0.0; D], [0.0; N]);
     for (w, d, f) in near {
         for a in 0..D {
@@ -60,6 +64,16 @@ fn fitted<const D: usize, const N: usize>(
             mean[n] += w / weights * f[n];
         }
     }
+    (place, mean)
+}
+
+/// Values at d = 0 of the linear fits.
+fn fitted<const D: usize, const N: usize>(
+    near: &[Near<D, N>],
+    weights: f64,
+    (place, mean): ([f64; D], [f64; N]),
+    spacing: f64,
+) -> [f64; N] {
     let (mut spread, mut together) = ([[0.0; D]; D], [[0.0; D]; N]);
     for (w, d, f) in near {
         let d = sub(d, &place);
@@ -75,8 +89,5 @@ fn fitted<const D: usize, const N: usize>(
         return mean;
     }
     let unspread = inverse(&spread);
-    if dot(&place, &apply(&unspread, &place)) > FURTHEST {
-        return mean;
-    }
     std::array::from_fn(|n| mean[n] - dot(&apply(&unspread, &together[n]), &place))
 }

@@ -41,6 +41,25 @@ mod tests {
         }
     }
 
+    /// In the corner of floor and wall particles lie on one side as well, and there is no surface.
+    #[test]
+    fn hydrostatic_pressure_is_linear_down_into_a_corner() {
+        let bed = Bed::<2>::with_side_wall(1.6, 16);
+        for at in [
+            [0.001, 0.001],
+            [0.002, 0.004],
+            [0.004, 0.001],
+            [0.001, 0.05],
+        ] {
+            let reading = bed.look(|view| PressureProbe { at }.sample(view));
+            let expected = bed.pressure_at(at[1]);
+            assert!(
+                (reading.values[0] - expected).abs() < 1e-9 * bed.pressure_at(0.0),
+                "{at:?}: {reading:?} for {expected}"
+            );
+        }
+    }
+
     #[test]
     fn air_wall_and_elsewhere_say_so() {
         let bed = Bed::<2>::new(1.6, 4, 0.0);

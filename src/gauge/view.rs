@@ -100,13 +100,19 @@ impl<const D: usize> View<'_, D> {
     /// the sum over solid reaches 7/8 on the face itself, hence 0.9.
     #[must_use]
     pub fn is_covered(&self, at: &[f64; D]) -> bool {
+        let (sum, nearest) = self.solid_around(at);
+        sum > 0.9 || nearest < 0.45 * self.spacing
+    }
+
+    /// Sum of V W over the particles of walls and gates around a place, and the distance of the nearest [m].
+    pub(super) fn solid_around(&self, at: &[f64; D]) -> (f64, f64) {
         let volume = self.spacing.powi(D as i32);
         let (mut sum, mut nearest) = (0.0, f64::INFINITY);
         self.for_each_near(self.solid, at, |_, _, r| {
             sum += volume * self.kernel.w(r);
             nearest = f64::min(nearest, r);
         });
-        sum > 0.9 || nearest < 0.45 * self.spacing
+        (sum, nearest)
     }
 }
 
