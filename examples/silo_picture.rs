@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use sandgate::component::{Component, ParticleView, ValueReference};
-use sandgate::scene::{self, InputTarget, Scene, WallGeometry};
+use sandgate::scene::{self, Scene, WallGeometry};
 
 /// Moments shown [s]: at rest, open, half closed, open again.
 const MOMENTS: [f64; 4] = [0.0, 0.35, 0.75, 1.1];
@@ -77,16 +77,7 @@ fn reference(component: &Component, prefix: &str) -> Result<ValueReference, Box<
 fn apply_schedules(component: &mut Component) -> Result<(), Box<dyn Error>> {
     let time = component.time();
     for schedule in component.scene().schedules.clone() {
-        let scene = component.scene();
-        let name = match schedule.input {
-            InputTarget::GateOpening(i) => format!("gate.{}.opening", scene.gates[i].name),
-            InputTarget::InflowRate(i) => format!("inflow.{}.rate", scene.inflows[i].name),
-        };
-        let variable = component
-            .variables()
-            .by_name(&name)
-            .ok_or("no such input")?;
-        let reference = variable.reference;
+        let reference = component.variables().input(schedule.input);
         component.set(&[reference], &[schedule.value_at(time)])?;
     }
     Ok(())

@@ -5,6 +5,7 @@
 
 mod bends;
 mod courses;
+mod drive;
 mod element;
 mod ends;
 mod flats;
@@ -17,6 +18,7 @@ mod tips;
 mod wall_points;
 
 pub use bends::to_centres;
+pub use drive::{Belt, Course, Drive, Steers};
 pub use element::{Element, box_elements, plane_elements, polyline_elements};
 pub use ends::{End, free_ends};
 pub use flats::{Face, box_points, plane_points};

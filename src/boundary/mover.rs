@@ -1,6 +1,7 @@
-//! A wall that moves as a whole, at constant velocity and angular velocity.
+//! A wall that moves as a whole, at constant velocity and angular velocity or at a share of them that is steered.
 
-use super::wall_points::WallPoints;
+use super::drive::Course;
+use super::wall_points::{GroupSpec, WallPoints};
 use crate::math::{Tensor, Vector, add, apply, multiply, norm, scale, skew, sub};
 
 /// How a rigid body moves: its centre at `velocity`, turning about it.
@@ -58,7 +59,11 @@ impl<const D: usize> RigidMotion<D> {
 /// The points of a wall that moves, where they were at time 0.
 #[derive(Clone, Debug)]
 pub struct Mover<const D: usize> {
+    /// Index of its drive, if it is steered.
+    pub drive: Option<usize>,
     motion: RigidMotion<D>,
+    group: u16,
+    full: GroupSpec,
     points: Vec<usize>,
     position: Vec<Vector<D>>,
     normal: Vec<Vector<D>>,
@@ -70,7 +75,12 @@ pub struct Mover<const D: usize> {
 impl<const D: usize> Mover<D> {
     /// The points of `group` among the wall points, which stand where they are at time 0.
     #[must_use]
-    pub fn new(walls: &WallPoints<D>, group: u16, motion: RigidMotion<D>) -> Self {
+    pub fn new(
+        walls: &WallPoints<D>,
+        group: u16,
+        motion: RigidMotion<D>,
+        drive: Option<usize>,
+    ) -> Self {
         // Not one run of points: those in acute corners come after the rows of all walls.
         let points: Vec<usize> = (0..walls.len())
             .filter(|&i| walls.group[i] == group)
@@ -82,6 +92,9 @@ impl<const D: usize> Mover<D> {
             .map(|x| norm(&sub(x, &motion.centre)))
             .fold(0.0, f64::max);
         Self {
+            drive,
+            group,
+            full: walls.groups[usize::from(group)],
             speed: norm(&motion.velocity) + motion.rate.abs() * arm,
             normal: of_points(&walls.normal),
             to_centre: points
@@ -94,13 +107,14 @@ impl<const D: usize> Mover<D> {
         }
     }
 
-    /// Puts its points where they are at time `t` [s], with their velocities.
-    pub fn place(&self, walls: &mut WallPoints<D>, t: f64) {
-        let (turn, centre) = (self.motion.rotation_at(t), self.motion.centre_at(t));
+    /// Puts its points where they are after a way [s], with the velocities of that rate.
+    pub fn place(&self, walls: &mut WallPoints<D>, Course { way, rate }: Course) {
+        let (turn, centre) = (self.motion.rotation_at(way), self.motion.centre_at(way));
+        walls.groups[usize::from(self.group)] = self.full.at_rate(rate);
         for (n, &i) in self.points.iter().enumerate() {
             let arm = sub(&self.position[n], &self.motion.centre);
             let x = add(&centre, &apply(&turn, &arm));
-            walls.velocity[i] = self.motion.velocity_at(&x, t);
+            walls.velocity[i] = scale(rate, &self.motion.velocity_at(&x, way));
             walls.position[i] = x;
             walls.normal[i] = apply(&turn, &self.normal[n]);
             if let Some(to) = walls.to_centre.get_mut(i) {
@@ -109,16 +123,22 @@ impl<const D: usize> Mover<D> {
         }
     }
 
+    /// Its group among those of the wall points.
+    #[must_use]
+    pub fn group(&self) -> u16 {
+        self.group
+    }
+
     /// Its points among the wall points, ascending.
     #[must_use]
     pub fn points(&self) -> &[usize] {
         &self.points
     }
 
-    /// How far its points move in `time` [s] at most [m].
+    /// How far its points move along a way [s] at most [m].
     #[must_use]
-    pub fn travel(&self, time: f64) -> f64 {
-        self.speed * time
+    pub fn travel(&self, way: f64) -> f64 {
+        self.speed * way
     }
 }
 

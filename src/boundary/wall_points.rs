@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::ends::End;
-use crate::math::{Vector, norm, sub};
+use crate::math::{Vector, norm, scale, sub};
 
 /// What all points of one wall or gate share.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +20,18 @@ pub struct GroupSpec {
     pub spin: [f64; 3],
     /// Velocity of the centre that it turns about, where it turns [m/s].
     pub drift: [f64; 3],
+}
+
+impl GroupSpec {
+    /// Of a wall that moves at this share of its full speed.
+    #[must_use]
+    pub(super) fn at_rate(self, rate: f64) -> Self {
+        Self {
+            spin: scale(rate, &self.spin),
+            drift: scale(rate, &self.drift),
+            ..self
+        }
+    }
 }
 
 /// All wall points: fixed walls first, then gates.

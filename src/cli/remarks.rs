@@ -139,11 +139,19 @@ fn meetings(scene: &Scene) -> Vec<String> {
     let meetings = scene.meetings().into_iter();
     meetings
         .map(|meeting| {
+            let wall = &scene.walls[meeting.wall];
+            let (at, what) = match &wall.drive {
+                None => (format!("t = {} s", to_three_digits(meeting.time)), ""),
+                Some(drive) => {
+                    let way = to_three_digits(meeting.time * drive.full);
+                    let unit = if drive.turns { "rad" } else { "m" };
+                    (format!("{way} {unit} from where it is drawn"), ", or shorten its way")
+                }
+            };
             format!(
-                "note: wall {} is a spacing deep in wall {} at t = {} s: walls do not stop each other, and what comes between them is squeezed.",
-                scene.walls[meeting.wall].name,
-                scene.walls[meeting.with].name,
-                to_three_digits(meeting.time),
+                "note: wall {} is a spacing deep in wall {} at {at}: walls do not stop each other, and what comes between them is squeezed. Move one\n  \
+                 of them{what}, unless it is meant.",
+                wall.name, scene.walls[meeting.with].name,
             )
         })
         .collect()

@@ -141,6 +141,7 @@ impl Component {
         let slope = |source: &Source| match source {
             Source::GateOpening(i) => inputs.gate_opening[*i].slope,
             Source::InflowRate(i) => inputs.inflow_rate[*i].slope,
+            Source::WallDrive(i) => inputs.wall_drive[*i].slope,
             _ => 0.0,
         };
         let rows = self.table.with_sources();
@@ -186,6 +187,7 @@ impl Component {
             Some(Source::Adjustable(i)) => values.fill(self.life.parameters[*i]),
             Some(Source::GateOpening(i)) => values.fill(inputs.gate_opening[*i].value),
             Some(Source::InflowRate(i)) => values.fill(inputs.inflow_rate[*i].value),
+            Some(Source::WallDrive(i)) => values.fill(inputs.wall_drive[*i].value),
             None => values.fill(self.number_for_host(row.reference)),
             _ => {
                 let offset = self.table.offset(row);
@@ -198,6 +200,7 @@ impl Component {
         match source {
             Source::GateOpening(i) => self.life.inputs.gate_opening.get_mut(i),
             Source::InflowRate(i) => self.life.inputs.inflow_rate.get_mut(i),
+            Source::WallDrive(i) => self.life.inputs.wall_drive.get_mut(i),
             _ => None,
         }
     }

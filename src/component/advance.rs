@@ -1,12 +1,11 @@
 //! One communication step: check, advance the engine to t + h, sample outputs.
 
 use super::access::saturated;
-use super::engine::{Advance, Ramp, SolverError};
+use super::engine::{Advance, Ramp, SolverError, input_ranges};
 use super::lifecycle::{self, Call};
 use super::outputs::{self, FlowMass};
 use super::watch::{Intermediate, Wish};
 use super::{Component, Error, Mode, StepReport};
-use crate::scene::InputTarget;
 use crate::units::{shown, shown_bound};
 
 /// Who looks at the internal steps of a communication step.
@@ -188,18 +187,11 @@ impl Component {
     /// beyond, a note each.
     fn check_ramps(&self, h: f64) -> Result<Vec<String>, Error> {
         let mut notes = Vec::new();
-        let inputs = &self.life.inputs;
-        let openings = inputs.gate_opening.iter().enumerate();
-        let openings = openings.map(|(i, ramp)| (ramp, InputTarget::GateOpening(i), 1.0));
-        let rates = inputs.inflow_rate.iter().zip(&self.scene.inflows);
-        let rates = rates.enumerate().map(|(i, (ramp, inflow))| {
-            let most = inflow.max_rate;
-            (ramp, InputTarget::InflowRate(i), most)
-        });
-        for (ramp, input, most) in openings.chain(rates) {
+        let ranges = self.life.inputs.all().zip(input_ranges(&self.scene));
+        for (ramp, (input, (least, most))) in ranges {
             let reached = ramp.at(h);
-            let slack = SLOPE_SLACK * most;
-            if ramp.slope == 0.0 || (-slack..=most + slack).contains(&reached) {
+            let slack = SLOPE_SLACK * (most - least);
+            if ramp.slope == 0.0 || (least - slack..=most + slack).contains(&reached) {
                 continue;
             }
             let slope = shown(ramp.slope);
@@ -211,32 +203,25 @@ impl Component {
                     call: "do_step",
                     what,
                     found: shown(reached),
-                    allowed: format!("0 to {}", shown_bound(most)),
+                    allowed: format!("{} to {}", shown_bound(least), shown_bound(most)),
                     remedy: "give another slope; 0 holds the value".to_owned(),
                 });
             }
-            notes.push(saturated(&what, reached, reached.clamp(0.0, most)));
+            notes.push(saturated(&what, reached, reached.clamp(least, most)));
         }
         Ok(notes)
     }
 
     /// Inputs hold the value they reached, inside their range; slopes were for one step.
     fn hold_inputs(&mut self, h: f64) {
-        let hold = |ramp: &mut Ramp, most: f64| {
+        let inputs = self.life.inputs.all_mut();
+        for (ramp, (_, (least, most))) in inputs.zip(input_ranges(&self.scene)) {
             if ramp.slope != 0.0 {
                 *ramp = Ramp {
-                    value: ramp.at(h).clamp(0.0, most),
+                    value: ramp.at(h).clamp(least, most),
                     slope: 0.0,
                 };
             }
-        };
-        let inputs = &mut self.life.inputs;
-        inputs
-            .gate_opening
-            .iter_mut()
-            .for_each(|ramp| hold(ramp, 1.0));
-        for (ramp, inflow) in inputs.inflow_rate.iter_mut().zip(&self.scene.inflows) {
-            hold(ramp, inflow.max_rate);
         }
     }
 }

@@ -6,6 +6,7 @@
 
 use super::{MassLedger, ParticleView, Statistics, Totals};
 use crate::gauge::Reading;
+use crate::scene::{InputTarget, Scene};
 use crate::solver::{StaysAwake, StepBound, SubStep};
 
 /// Steps that differ by less are the same [1].
@@ -18,6 +19,32 @@ pub(crate) struct Ramp {
     pub(crate) value: f64,
     /// Change per second within the step; 0 holds the value.
     pub(crate) slope: f64,
+}
+
+impl Inputs {
+    /// All of them, in one order.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Ramp> {
+        let gates = self.gate_opening.iter();
+        gates.chain(&self.inflow_rate).chain(&self.wall_drive)
+    }
+
+    /// As [`Inputs::all`].
+    pub(crate) fn all_mut(&mut self) -> impl Iterator<Item = &mut Ramp> {
+        let gates = self.gate_opening.iter_mut();
+        gates
+            .chain(&mut self.inflow_rate)
+            .chain(&mut self.wall_drive)
+    }
+}
+
+/// What the inputs of a scene are, with their ranges, in the order of [`Inputs::all`].
+pub(crate) fn input_ranges(scene: &Scene) -> impl Iterator<Item = (InputTarget, (f64, f64))> {
+    let openings = (0..scene.gates.len()).map(|i| (InputTarget::GateOpening(i), (0.0, 1.0)));
+    let inflows = scene.inflows.iter().enumerate();
+    let rates = inflows.map(|(i, inflow)| (InputTarget::InflowRate(i), (0.0, inflow.max_rate)));
+    let drives = scene.drives().enumerate();
+    let drives = drives.map(|(i, (_, drive))| (InputTarget::WallDrive(i), drive.range()));
+    openings.chain(rates).chain(drives)
 }
 
 impl Ramp {
@@ -34,6 +61,8 @@ pub(crate) struct Inputs {
     pub(crate) gate_opening: Vec<Ramp>,
     /// Rate wanted of each inflow, in the scene's order [kg/s].
     pub(crate) inflow_rate: Vec<Ramp>,
+    /// Speed or position wanted of each steered wall, in the scene's order [m/s, m; of turning rad/s, rad].
+    pub(crate) wall_drive: Vec<Ramp>,
 }
 
 /// What one call of [`Engine::advance`] did.
@@ -92,6 +121,15 @@ pub(crate) struct GateState {
     pub(crate) impulse: [f64; 3],
 }
 
+/// A steered wall after the last advance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct DriveReading {
+    /// Speed that it has, along its velocity or in the sense in which it turns [m/s or rad/s].
+    pub(crate) speed: f64,
+    /// How far it is from where it is drawn, likewise [m or rad].
+    pub(crate) position: f64,
+}
+
 /// An inflow after the last advance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct InflowState {
@@ -108,6 +146,8 @@ pub(crate) struct Devices {
     pub(crate) gates: Vec<GateState>,
     /// Inflows.
     pub(crate) inflows: Vec<InflowState>,
+    /// Steered walls.
+    pub(crate) drives: Vec<DriveReading>,
     /// Mass taken out by each outflow since the start [kg].
     pub(crate) outflow_mass: Vec<f64>,
     /// Impulse of the material on each wall over the last advance [N s].
@@ -204,8 +244,8 @@ pub(crate) trait Engine: Send {
     /// Share of a full point of each of them [1].
     fn wall_shares(&self) -> Vec<f64>;
 
-    /// How long walls that move as a whole have moved [s].
-    fn wall_time(&self) -> f64;
+    /// How long each wall of the scene would have moved at its full speed to be where it is [s].
+    fn wall_times(&self) -> Vec<f64>;
 
     /// Threads of the sweeps, 0 for all cores; results do not depend on it.
     fn set_threads(&mut self, threads: usize);

@@ -45,6 +45,7 @@ impl Life {
         let inputs = Inputs {
             gate_opening: scene.gates.iter().map(|g| held(g.start)).collect(),
             inflow_rate: scene.inflows.iter().map(|i| held(i.rate)).collect(),
+            wall_drive: scene.drives().map(|(_, d)| held(d.start_value())).collect(),
         };
         let before = FlowMass::now(engine.devices());
         let outputs =
@@ -67,12 +68,10 @@ impl Life {
 
     /// Whether all of its figures are numbers. Saved ones may be anything.
     fn is_finite(&self) -> bool {
-        let inputs = self
+        let ramps = self
             .inputs
-            .gate_opening
-            .iter()
-            .chain(&self.inputs.inflow_rate);
-        let ramps = inputs.flat_map(|ramp| [&ramp.value, &ramp.slope]);
+            .all()
+            .flat_map(|ramp| [&ramp.value, &ramp.slope]);
         let values = [&self.parameters, &self.outputs, &self.before];
         let mut all = ramps.chain(values.into_iter().flatten()).chain(&self.steps);
         self.time.is_finite() && all.all(|x| x.is_finite())
@@ -144,6 +143,7 @@ impl Component {
             [
                 l.inputs.gate_opening.len(),
                 l.inputs.inflow_rate.len(),
+                l.inputs.wall_drive.len(),
                 l.outputs.len(),
                 l.before.len(),
                 l.parameters.len(),
@@ -151,7 +151,7 @@ impl Component {
         };
         if counts(&life) != counts(&self.life) {
             return Err(Error::Snapshot(format!(
-                "found {:?} gates, inflows, output values (twice) and parameters, allowed {:?} (this scene's)",
+                "found {:?} gates, inflows, steered walls, output values (twice) and parameters, allowed {:?} (this scene's)",
                 counts(&life),
                 counts(&self.life)
             )));

@@ -266,10 +266,11 @@ impl Component {
         self.engine.wall_shares()
     }
 
-    /// How long walls that move as a whole have moved: since the start, for pictures [s].
+    /// How long each wall of the scene would have moved at its full speed to be where it is, for pictures [s]: since the start, but of
+    /// those that are steered.
     #[must_use]
-    pub fn wall_time(&self) -> f64 {
-        self.engine.wall_time()
+    pub fn wall_times(&self) -> Vec<f64> {
+        self.engine.wall_times()
     }
 
     /// Threads used by sweeps: results do not depend on it. 0 means all cores. A new component has 1. As setting

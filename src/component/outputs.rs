@@ -98,7 +98,8 @@ impl Moment<'_> {
             | Source::SaturateInputs
             | Source::Adjustable(_)
             | Source::GateOpening(_)
-            | Source::InflowRate(_) => 0.0,
+            | Source::InflowRate(_)
+            | Source::WallDrive(_) => 0.0,
             Source::GateActualOpening(i) => self.devices.gates[i].opening,
             Source::GateBlocked(i) => flag(self.devices.gates[i].blocked),
             Source::InflowActualRate(i) => {
@@ -110,6 +111,8 @@ impl Moment<'_> {
             Source::OutflowRate(i) => {
                 self.over_step(self.devices.outflow_mass[i] - self.before.outflows[i])
             }
+            Source::WallActualSpeed(i) => self.devices.drives[i].speed,
+            Source::WallActualPosition(i) => self.devices.drives[i].position,
             Source::Reading { gauge, first } => self.readings[gauge].values[first + k],
             Source::Validity(gauge) => f64::from(self.readings[gauge].validity.code()),
             Source::MassInitial => self.ledger.initial,

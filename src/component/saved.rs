@@ -60,6 +60,8 @@ impl<const D: usize> Saved<D> {
                 .gates
                 .iter()
                 .all(|g| share(g.opening) && share(g.listed_opening) && g.rate.is_finite())
+            && state.drives.len() == now.drives.len()
+            && solver.can_be(&state.drives)
             && saved.state.gates.len() == now.gates.len()
             && saved.state.inflows.len() == now.inflows.len()
             && saved.state.inflows.iter().all(|i| {

@@ -5,13 +5,15 @@ mod solids;
 
 use std::sync::OnceLock;
 
-use super::engine::{Advance, Devices, Engine, GateState, InflowState, Inputs, SolverError};
+use super::engine::{
+    Advance, Devices, DriveReading, Engine, GateState, InflowState, Inputs, SolverError,
+};
 use super::sampling::Sampler;
 use super::saved::Saved;
 use super::{Error, MassLedger, ParticleView, Statistics, Totals, figures};
 use crate::gauge::Reading;
 use crate::math::{Geometry, Vector};
-use crate::scene::{self, Dimension, Scene};
+use crate::scene::{self, Dimension, Scene, WallDrive};
 use crate::solver::{Solver, StaysAwake, StepInputs, three};
 use crate::state::{RestState, State};
 use solids::Solids;
@@ -29,9 +31,11 @@ struct Simulation<const D: usize> {
     /// What [`Engine::back_to_kept`] goes back to.
     kept: Option<Saved<D>>,
     devices: Devices,
-    walls: usize,
     /// Largest rate of each inflow [kg/s].
     most_rate: Vec<f64>,
+    drives: Vec<WallDrive>,
+    /// Of each wall the number of its drive.
+    wall_drives: Vec<Option<usize>>,
     spacing: f64,
     geometry: Geometry,
     lower: Vector<D>,
@@ -70,8 +74,9 @@ impl<const D: usize> Simulation<D> {
             slept_at: None,
             kept: None,
             devices: Devices::default(),
-            walls: scene.walls.len(),
             most_rate: scene.inflows.iter().map(|i| i.max_rate).collect(),
+            drives: scene.drives().map(|(_, drive)| drive.clone()).collect(),
+            wall_drives: (0..scene.walls.len()).map(|n| scene.drive_of(n)).collect(),
             spacing,
             geometry: scene::geometry(scene),
             lower,
@@ -84,7 +89,7 @@ impl<const D: usize> Simulation<D> {
 
     fn refresh_devices(&mut self) {
         let state = &self.state;
-        let (walls, others) = state.impulse.split_at(self.walls);
+        let (walls, others) = state.impulse.split_at(self.wall_drives.len());
         let (gates, moments) = others.split_at(state.gates.len());
         self.devices = Devices {
             gates: state
@@ -103,6 +108,15 @@ impl<const D: usize> Simulation<D> {
                 .map(|i| InflowState {
                     mass: i.admitted,
                     blocked: i.blocked,
+                })
+                .collect(),
+            drives: state
+                .drives
+                .iter()
+                .zip(&self.drives)
+                .map(|(at, drive)| DriveReading {
+                    speed: at.rate * drive.full,
+                    position: (at.way * drive.full).min(drive.travel),
                 })
                 .collect(),
             outflow_mass: state.drained.clone(),
@@ -126,6 +140,13 @@ impl<const D: usize> Simulation<D> {
         let rates: Vec<f64> = rates
             .map(|(r, most)| r.at(elapsed).clamp(0.0, *most))
             .collect();
+        let drives = inputs.wall_drive.iter().zip(&self.drives);
+        let drives: Vec<f64> = drives
+            .map(|(r, drive)| {
+                let (least, most) = drive.range();
+                r.at(elapsed).clamp(least, most) / drive.full
+            })
+            .collect();
         let Self {
             state,
             solver,
@@ -139,6 +160,7 @@ impl<const D: usize> Simulation<D> {
             &StepInputs {
                 openings: &openings,
                 rates: &rates,
+                drives: &drives,
             },
             &mut |before, grains| {
                 if counts {
@@ -209,8 +231,7 @@ impl<const D: usize> Engine for Simulation<D> {
         }
         self.state.forget_blocked();
         self.state.time = start;
-        let mut ramps = inputs.gate_opening.iter().chain(&inputs.inflow_rate);
-        if ramps.any(|r| r.slope != 0.0) {
+        if inputs.all().any(|r| r.slope != 0.0) {
             // What changes within the step would come too late for a sleeper.
             self.state.rest = RestState::default();
         }
@@ -322,8 +343,12 @@ impl<const D: usize> Engine for Simulation<D> {
         weights.filter(|w| *w > 0.0).collect()
     }
 
-    fn wall_time(&self) -> f64 {
-        self.state.pose.now
+    fn wall_times(&self) -> Vec<f64> {
+        let way = |drive: Option<usize>| match drive {
+            Some(drive) => self.state.drives[drive].way,
+            None => self.state.pose.now,
+        };
+        self.wall_drives.iter().map(|drive| way(*drive)).collect()
     }
 
     fn set_threads(&mut self, threads: usize) {

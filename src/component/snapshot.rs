@@ -16,7 +16,7 @@ use std::io::Read;
 /// First bytes of every saved state.
 const MARK: &[u8; 8] = b"SANDGATE";
 /// Counts up whenever the payload's layout changes; other versions are refused, never guessed.
-const VERSION: u32 = 9;
+const VERSION: u32 = 10;
 /// Bytes before the checksum.
 const PREFIX: usize = 8 + 4 + 32 + 8;
 /// Bytes before the payload.

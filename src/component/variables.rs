@@ -170,6 +170,7 @@ impl VariableTable {
         self.of_source(match input {
             InputTarget::GateOpening(gate) => Source::GateOpening(gate),
             InputTarget::InflowRate(inflow) => Source::InflowRate(inflow),
+            InputTarget::WallDrive(drive) => Source::WallDrive(drive),
         })
     }
 

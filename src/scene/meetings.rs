@@ -12,7 +12,7 @@ pub struct Meeting {
     pub wall: usize,
     /// The one that stands.
     pub with: usize,
-    /// When it is a spacing deep in it [s].
+    /// When it is a spacing deep in it [s]; of one that is steered, the time that the way there takes at full speed.
     pub time: f64,
 }
 
@@ -76,7 +76,8 @@ impl Scene {
         })
     }
 
-    /// Walls that move as a whole and come to be a spacing deep in one that stands, until the run's end, each with the first.
+    /// Walls that move as a whole and come to be a spacing deep in one that stands, until the run's end or between their end stops, each
+    /// with the first.
     #[must_use]
     pub fn meetings(&self) -> Vec<Meeting> {
         match self.dimension {
@@ -101,11 +102,13 @@ impl Scene {
             // What only turns is back after a turn.
             let only_turns = motion.velocity == [0.0; D] && motion.rate != 0.0;
             let turn = std::f64::consts::TAU / motion.rate.abs();
-            let until = if only_turns {
-                turn.min(self.run.until)
-            } else {
-                self.run.until
+            let until = match &wall.drive {
+                // Nobody knows how far one without an end stop will go.
+                Some(drive) if drive.travel.is_infinite() => return None,
+                Some(drive) => drive.travel / drive.full,
+                None => self.run.until,
             };
+            let until = if only_turns { turn.min(until) } else { until };
             let places_at = |time: f64| -> Vec<Vector<D>> {
                 let (turn, centre) = (motion.rotation_at(time), motion.centre_at(time));
                 let arms = places.iter().map(|x| sub(x, &motion.centre));
@@ -298,13 +301,18 @@ mod tests {
         };
         // 0.15 m to the side's face and a spacing into it.
         assert!((time - 0.3).abs() < 0.011, "{time}");
+        let steered = meet(&format!(
+            "{bar}\nvelocity = [0.05, 0]\ninput = \"speed\"\nstroke = 0.2"
+        ));
+        assert!((steered[0].time - 3.0).abs() < 0.11, "{steered:?}");
         for free in [
             // Up between two ledges, flush with both, and down onto the tank's rims.
             format!("{bar}\nvelocity = [0, 0.2]\n[walls.a]\npolyline = [[0.3, 0.5], [0.1, 0.5]]\n[walls.b]\npolyline = [[0.48, 0.5], [0.36, 0.5]]"),
             "box = { lower = [0, 0.8], upper = [0.5, 0.85] }\nvelocity = [0, -0.1]".to_owned(),
             format!("{bar}\nvelocity = [0, 0.5]"),
-            // Not within the run.
+            // Not within the run, not before the end stop.
             format!("{bar}\nvelocity = [0.06, 0]"),
+            format!("{bar}\nvelocity = [0.5, 0]\ninput = \"position\"\nstroke = 0.13"),
             // A piston between the sides, and a paddle.
             "box = { lower = [0, 0.5], upper = [0.5, 0.55] }\nvelocity = [0, -0.2]".to_owned(),
             "box = { lower = [0.2, 0.3], upper = [0.3, 0.32] }\nangular_velocity = 3\ncentre = [0.25, 0.31]".to_owned(),

@@ -182,6 +182,20 @@ impl Scene {
         self.slips().any(|s| s.friction() > 0.0)
     }
 
+    /// Walls that are steered, and how, in their order.
+    pub fn drives(&self) -> impl Iterator<Item = (&Wall, &WallDrive)> {
+        let walls = self.walls.iter();
+        walls.filter_map(|wall| Some((wall, wall.drive.as_ref()?)))
+    }
+
+    /// The number of a wall's drive among [`Scene::drives`].
+    #[must_use]
+    pub fn drive_of(&self, wall: usize) -> Option<usize> {
+        self.walls[wall].drive.as_ref()?;
+        let before = self.walls[..wall].iter();
+        Some(before.filter(|w| w.drive.is_some()).count())
+    }
+
     /// Walls and gates whose moment a gauge reads, with the points that it is taken about [m], in the order of the gauges.
     pub fn moments(&self) -> impl Iterator<Item = (ForceTarget, Point)> {
         self.gauges.iter().filter_map(|gauge| match gauge.kind {

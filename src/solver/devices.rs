@@ -1,7 +1,8 @@
 //! Moving walls, gates and outflows: what moves and takes out between two internal steps.
 
+use crate::boundary::Course;
 use crate::math::{CHUNK, Vector};
-use crate::state::State;
+use crate::state::{DriveState, State};
 
 use super::Solver;
 use super::timestep::MOST_OF_A_PLATE;
@@ -31,23 +32,79 @@ impl<const D: usize> Sink<D> {
     }
 }
 
+/// Way and rate of a drive.
+pub(super) fn course(at: &DriveState) -> Course {
+    Course {
+        way: at.way,
+        rate: at.rate,
+    }
+}
+
 impl<const D: usize> Solver<D> {
-    /// Moves the walls that move as a whole to the end of a step.
-    pub(super) fn move_walls(&mut self, state: &mut State<D>, dt: f64) {
+    /// Moves the walls that move as a whole, and those that are steered, to the end of a step.
+    pub(super) fn move_walls(&mut self, state: &mut State<D>, wanted: &[f64], dt: f64) {
+        let drives = self.drives.iter().zip(&mut state.drives);
+        for ((drive, at), wanted) in drives.zip(wanted) {
+            Course {
+                way: at.way,
+                rate: at.rate,
+            } = drive.advance(course(at), *wanted, dt);
+        }
         if !self.movers.is_empty() {
             state.pose.now += dt;
-            self.place_movers(state.pose.now);
+        }
+        self.place_walls(state);
+    }
+
+    /// Puts walls that move where they are now, at the speed that they have.
+    pub(super) fn place_walls(&mut self, state: &State<D>) {
+        self.put_walls(state.pose.now, |drive| course(&state.drives[drive]));
+        for belt in &self.belts {
+            belt.run(&mut self.walls, state.drives[belt.drive].rate);
         }
     }
 
-    /// Puts the walls that move as a whole where they are after having moved for `time` [s].
-    pub(super) fn place_movers(&mut self, time: f64) {
+    /// Puts walls that move as a whole where they were when the neighbour lists were built.
+    pub(super) fn place_walls_as_listed(&mut self, state: &State<D>) {
+        self.put_walls(state.pose.listed, |drive| Course {
+            way: state.drives[drive].listed_way,
+            rate: 0.0,
+        });
+    }
+
+    /// Puts the walls that move as a whole where they are after having moved for `time` [s], steered ones by their course.
+    fn put_walls(&mut self, time: f64, course: impl Fn(usize) -> Course) {
         for mover in &self.movers {
-            mover.place(&mut self.walls, time);
+            let unsteered = Course {
+                way: time,
+                rate: 1.0,
+            };
+            mover.place(&mut self.walls, mover.drive.map_or(unsteered, &course));
             for &i in mover.points() {
                 self.periodic.wrap(&mut self.walls.position[i]);
             }
         }
+    }
+
+    /// Most that a wall which moves as a whole has moved since the neighbour lists were built [m].
+    pub(super) fn travel_of_walls(&self, state: &State<D>) -> f64 {
+        let unsteered = state.pose.now - state.pose.listed;
+        let way = |drive: usize| (state.drives[drive].way - state.drives[drive].listed_way).abs();
+        self.movers.iter().fold(0.0, |travel, mover| {
+            f64::max(travel, mover.travel(mover.drive.map_or(unsteered, way)))
+        })
+    }
+
+    /// Whether drives can be as these are: none beyond its end stops or faster than it can be.
+    #[must_use]
+    pub fn can_be(&self, drives: &[DriveState]) -> bool {
+        let each = self.drives.iter().zip(drives);
+        each.into_iter().all(|(drive, at)| {
+            let (least, most) = drive.stops;
+            let ways = [at.way, at.listed_way];
+            let is_within = |way: &f64| way.is_finite() && (least..=most).contains(way);
+            ways.iter().all(is_within) && (-1.0..=1.0).contains(&at.rate)
+        })
     }
 
     /// Moves plates towards the openings wanted; a plate that material holds or slows down says so, until

@@ -102,7 +102,7 @@ pub use validity::Validity;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::boundary::{Mover, Plate, RigidMotion, WallPoints};
+use crate::boundary::{Belt, Drive, Mover, Plate, RigidMotion, WallPoints};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
 use crate::math::{Arch, Geometry, Quad, Tensor, Vector, Workers};
@@ -139,6 +139,8 @@ pub struct Solver<const D: usize> {
     /// Number of wall groups before the gates'.
     fixed_groups: usize,
     movers: Vec<Mover<D>>,
+    belts: Vec<Belt<D>>,
+    drives: Vec<Drive>,
     plates: Vec<Plate<D>>,
     spins: Vec<(Range<u64>, RigidMotion<D>)>,
     sources: Vec<Source<D>>,

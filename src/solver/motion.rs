@@ -117,11 +117,7 @@ impl<const D: usize> Solver<D> {
             .zip(&state.gates)
             .map(|(p, g)| (g.opening - g.listed_opening).abs() * p.length)
             .fold(0.0, f64::max);
-        let moved = state.pose.now - state.pose.listed;
-        let travel = self
-            .movers
-            .iter()
-            .fold(travel, |t, m| t.max(m.travel(moved)));
+        let travel = travel.max(self.travel_of_walls(state));
         let travel = travel.max(self.travel_of_streams(state));
         // What comes to rest must not lean on what an outflow took.
         let lean = state.rest.quiet_steps > 0 && state.grains.drained.contains(&true);
@@ -145,6 +141,9 @@ impl<const D: usize> Solver<D> {
     pub(super) fn renew_lists(&mut self, state: &mut State<D>) {
         self.lists.sort(&mut state.grains, &self.periodic);
         state.pose.listed = state.pose.now;
+        for drive in &mut state.drives {
+            drive.listed_way = drive.way;
+        }
         for gate in &mut state.gates {
             gate.listed_opening = gate.opening;
         }

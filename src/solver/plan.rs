@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::boundary::{Mover, Plate, RigidMotion, WallPoints};
+use crate::boundary::{Belt, Drive, Mover, Plate, RigidMotion, WallPoints};
 use crate::material::Material;
 use crate::math::{Geometry, Vector, cross, sub};
 use crate::state::Grains;
@@ -35,6 +35,10 @@ pub struct Plan<const D: usize> {
     pub ghost_depth: Vec<f64>,
     /// Walls that move as a whole.
     pub movers: Vec<Mover<D>>,
+    /// Walls whose surface slides along itself at a speed that is steered.
+    pub belts: Vec<Belt<D>>,
+    /// How the walls that are steered may move.
+    pub drives: Vec<Drive>,
     /// Gates.
     pub plates: Vec<Plate<D>>,
     /// How bodies that turn move at the start, by the numbers of their particles.
@@ -78,6 +82,8 @@ pub struct StepInputs<'a> {
     pub openings: &'a [f64],
     /// Rate of each inflow [kg/s].
     pub rates: &'a [f64],
+    /// What each steered wall is told: its rate, or its way [s].
+    pub drives: &'a [f64],
 }
 
 /// Sees each move of an internal step: positions before it [m], and the particles after it.

@@ -6,7 +6,7 @@
 //! A window is [`QUIET_STEPS`] of them in a row. Once forces on walls agree in two windows that follow each other, the
 //! particles stand still and time passes in one step, forces as they were: grains come to rest long before friction has
 //! settled what each wall carries (docs/theory.md, "Sleep").
-//! A gate told to move or an inflow told to run wakes the scene. Scenes with moving walls or without walls never sleep, nor do
+//! A gate or a steered wall told to move or an inflow told to run wakes the scene. Scenes with walls that move unsteered or without walls never sleep, nor do
 //! those with a material that would still have some way to go at such speeds.
 
 use crate::boundary::WallPoints;
@@ -14,6 +14,7 @@ use crate::material::{Law, Material};
 use crate::math::{Vector, dot, norm, scale, sub};
 use crate::state::{Grains, RestState, State};
 
+use super::devices::course;
 use super::{Numerics, Scheme, Solver, StepBound, StepInputs, SubStep};
 
 /// Quiet steps of a window: friction settles by solves, and a wave crosses 100 h meanwhile or more.
@@ -50,11 +51,13 @@ pub enum StaysAwake {
     Creeping(usize),
 }
 
-/// Whether a scene can sleep at all: something fixed to rest on, and no material that creeps.
+/// Whether a scene can sleep at all: something to rest on that stands, if only while it is told to, and no material that creeps. `steered` are
+/// groups of walls.
 pub(super) fn stays_awake<const D: usize>(
     numerics: &Numerics,
     gravity: &Vector<D>,
     walls: &WallPoints<D>,
+    steered: &[u16],
     materials: &[Material],
 ) -> Option<StaysAwake> {
     if !numerics.sleep || numerics.scheme != Scheme::Implicit {
@@ -63,7 +66,9 @@ pub(super) fn stays_awake<const D: usize>(
     if walls.is_empty() {
         return Some(StaysAwake::NoWalls);
     }
-    if walls.velocity.iter().any(|v| *v != [0.0; D]) {
+    let moves = walls.velocity.iter().zip(&walls.group);
+    let mut unsteered = moves.filter(|(v, group)| **v != [0.0; D] && !steered.contains(*group));
+    if unsteered.next().is_some() {
         return Some(StaysAwake::MovingWalls);
     }
     let inertia = numerics.fall_speed.powi(3) / norm(gravity);
@@ -196,13 +201,19 @@ impl<const D: usize> Solver<D> {
         twice_energy < (QUIET_SPEED * fall).powi(2) * mass
     }
 
-    /// Gates stand where they should, but for rounding, and no inflow runs.
+    /// Gates stand where they should, but for rounding, steered walls stand, and no inflow runs.
     fn is_left_alone(&self, state: &State<D>, inputs: &StepInputs<'_>) -> bool {
         let gates = state.gates.iter().zip(inputs.openings);
         gates
             .into_iter()
             .all(|(g, wanted)| (g.opening - wanted).abs() < 1e-9)
             && inputs.rates.iter().all(|r| *r == 0.0)
+            && self
+                .drives
+                .iter()
+                .zip(&state.drives)
+                .zip(inputs.drives)
+                .all(|((drive, at), wanted)| drive.rests(course(at), *wanted))
     }
 }
 

@@ -290,6 +290,7 @@ mod tests {
         let inputs = StepInputs {
             openings: &[],
             rates: &[],
+            drives: &[],
         };
         let failed = solver.step(&mut state, 1.0, &inputs, &mut |_, _| {});
         let quantity = match failed {

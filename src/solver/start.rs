@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::boundary::{Belt, Course, Mover};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
 use crate::math::{Arch, Workers, norm};
@@ -46,6 +47,9 @@ impl Needs {
             0.0
         };
         let rate = explicit::rate::<D>(lattice_sum);
+        let movers = plan.movers.iter().filter(|m| m.drive.is_some());
+        let belts = plan.belts.iter().map(Belt::group);
+        let steered: Vec<u16> = movers.map(Mover::group).chain(belts).collect();
         Self {
             bulk_friction: materials.iter().any(|m| m.bulk_friction > 0.0),
             fluids,
@@ -56,7 +60,13 @@ impl Needs {
             lattice_sum,
             slides: texture::who_slides(numerics, geometry, materials, rate),
             turns: turning::who_turns(numerics, geometry, materials),
-            stays_awake: rest::stays_awake(numerics, &plan.gravity, &plan.walls, materials),
+            stays_awake: rest::stays_awake(
+                numerics,
+                &plan.gravity,
+                &plan.walls,
+                &steered,
+                materials,
+            ),
         }
     }
 }
@@ -69,7 +79,7 @@ impl<const D: usize> Solver<D> {
         let h = spacing * plan.numerics.smoothing_ratio;
         let kernel = WendlandC2::new(h);
         for mover in &plan.movers {
-            mover.place(&mut plan.walls, 0.0);
+            mover.place(&mut plan.walls, Course::START);
         }
         let needs = Needs::of(&plan, &kernel);
         let fixed_groups = plan.walls.groups.len() - plan.plates.len();
@@ -93,6 +103,8 @@ impl<const D: usize> Solver<D> {
             ghost_depth: plan.ghost_depth,
             fixed_groups,
             movers: plan.movers,
+            belts: plan.belts,
+            drives: plan.drives,
             plates: plan.plates,
             spins: plan.spins,
             has_streams: plan.sources.iter().any(|s| s.piston.is_some()),
@@ -165,6 +177,7 @@ impl<const D: usize> Solver<D> {
 
     /// Sorts a fresh state's particles and derives everything else from it.
     pub fn start(&mut self, state: &mut State<D>) {
+        self.place_walls(state);
         self.renew_lists(state);
         // What lies as it was made has not moved.
         self.moved = Moved::default();
@@ -195,13 +208,13 @@ impl<const D: usize> Solver<D> {
         // What the state before had moved is no part of this one.
         self.moved = Moved::default();
         // Lists were built with plates and movers where they were then.
-        self.place_movers(state.pose.listed);
+        self.place_walls_as_listed(state);
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.listed_opening, 0.0);
         }
         self.place_streams(state, true);
         self.build_lists(state);
-        self.place_movers(state.pose.now);
+        self.place_walls(state);
         for (plate, gate) in self.plates.iter().zip(&state.gates) {
             plate.place(&mut self.walls, gate.opening, gate.rate);
         }

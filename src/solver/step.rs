@@ -23,7 +23,7 @@ impl<const D: usize> Solver<D> {
         if self.stays_asleep(state, inputs) {
             return Ok(self.sleep_until(state, end));
         }
-        let step = self.choose_step(state, inputs.openings, end)?;
+        let step = self.choose_step(state, inputs, end)?;
         match self.numerics.scheme {
             Scheme::Implicit => self.step_implicit(state, inputs, step, on_move),
             Scheme::PaperA(choices) => self.step_paper_a(&choices, state, step, on_move),
@@ -50,7 +50,7 @@ impl<const D: usize> Solver<D> {
         self.note_lone(state);
         self.move_grains(state, dt, acoustic_dt)?;
         on_move(&self.before, &state.grains);
-        self.move_walls(state, dt);
+        self.move_walls(state, inputs.drives, dt);
         self.move_gates(state, inputs.openings, dt);
         self.push_streams(state, inputs.rates, dt);
         self.drain(state);

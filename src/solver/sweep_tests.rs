@@ -367,6 +367,7 @@ fn steps_agree<const D: usize>(material: fn() -> Material, geometry: Geometry, c
         let inputs = super::StepInputs {
             openings: &[],
             rates: &[],
+            drives: &[],
         };
         solver.lower = [-1.0; D];
         solver.upper = [1.0; D];

@@ -2,7 +2,8 @@
 
 use crate::state::State;
 
-use super::{Scheme, Solver, SolverError, StepBound};
+use super::devices::course;
+use super::{Scheme, Solver, SolverError, StepBound, StepInputs};
 
 /// Most that a plate moves in a step, over h [1].
 pub(super) const MOST_OF_A_PLATE: f64 = 0.1;
@@ -41,6 +42,11 @@ impl<const D: usize> Solver<D> {
         let gates = state.gates.iter().zip(wanted).zip(&self.plates);
         let moving = gates.filter(|((gate, wanted), _)| gate.opening != **wanted);
         let fastest = moving.fold(0.0, |v, (_, plate)| f64::max(v, plate.max_speed));
+        self.device_bound(fastest)
+    }
+
+    /// Bound of a step in which a device sets off that moves this fast [m/s].
+    fn device_bound(&self, fastest: f64) -> f64 {
         if fastest > 0.0 {
             (MOST_OF_A_PLATE * self.kernel.h / fastest).max(self.numerics.acoustic_step())
         } else {
@@ -48,15 +54,26 @@ impl<const D: usize> Solver<D> {
         }
     }
 
+    /// Steered walls that move as a whole likewise, while they are to move otherwise than they do: neighbours know of it a step later.
+    fn drive_bound(&self, state: &State<D>, wanted: &[f64]) -> f64 {
+        let drives = self.drives.iter().zip(&state.drives).zip(wanted);
+        let changing =
+            drives.filter(|((drive, at), wanted)| !drive.is_settled(course(at), **wanted));
+        let fastest = changing.fold(0.0, |v, ((drive, _), _)| f64::max(v, drive.speed));
+        self.device_bound(fastest)
+    }
+
     /// Largest stable step now, and what bounds it.
     pub(super) fn step_bound(
         &self,
         state: &State<D>,
-        wanted: &[f64],
+        inputs: &StepInputs<'_>,
     ) -> Result<(f64, StepBound), SolverError> {
         let time = state.time;
         let mut best = (self.numerics.longest_step(), StepBound::Acoustic);
-        let motion = self.motion_bound(state).min(self.gate_bound(state, wanted));
+        let devices = self.gate_bound(state, inputs.openings);
+        let devices = devices.min(self.drive_bound(state, inputs.drives));
+        let motion = self.motion_bound(state).min(devices);
         if motion < best.0 {
             // Fast motion asks for one acoustic step, and that is then what bounds.
             let acoustic = motion == self.numerics.acoustic_step();
@@ -83,11 +100,11 @@ impl<const D: usize> Solver<D> {
     pub(super) fn choose_step(
         &self,
         state: &State<D>,
-        wanted: &[f64],
+        inputs: &StepInputs<'_>,
         end: f64,
     ) -> Result<(f64, StepBound), SolverError> {
         let (stable, bound) = match self.numerics.scheme {
-            Scheme::Implicit => self.step_bound(state, wanted)?,
+            Scheme::Implicit => self.step_bound(state, inputs)?,
             Scheme::PaperA(_) => self.bound_paper_a(state.time)?,
             Scheme::PaperB(_) => self.bound_paper_b(state)?,
         };

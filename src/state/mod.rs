@@ -24,6 +24,8 @@ pub struct State<const D: usize> {
     pub grains: Grains<D>,
     /// Where walls are that move as a whole.
     pub pose: PoseTimes,
+    /// Walls that are steered, in the order of the scene.
+    pub drives: Vec<DriveState>,
     /// One per gate of the scene.
     pub gates: Vec<GateState>,
     /// One per inflow of the scene.
@@ -95,13 +97,24 @@ impl<const D: usize> State<D> {
     }
 }
 
-/// How long walls that move as a whole have moved.
+/// How long walls that move as a whole, and are not steered, have moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PoseTimes {
     /// Until now [s].
     pub now: f64,
     /// Until the neighbour lists were built [s].
     pub listed: f64,
+}
+
+/// Where a wall is that is steered: ways are times that it would have taken at full speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DriveState {
+    /// Way until now [s].
+    pub way: f64,
+    /// Share of full speed over the last step, negative: backwards [1].
+    pub rate: f64,
+    /// Way until the neighbour lists were built [s].
+    pub listed_way: f64,
 }
 
 /// Where a gate is.

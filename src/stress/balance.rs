@@ -19,6 +19,8 @@ pub(super) struct Before {
     /// Openings of all gates, and whether material held or slowed each in the last step.
     pub(super) openings: Vec<f64>,
     pub(super) blocked: Vec<bool>,
+    /// How long each wall would have moved at its full speed to be where it is [s].
+    pub(super) wall_times: Vec<f64>,
 }
 
 impl Before {
@@ -42,6 +44,7 @@ impl Before {
                 .map(|g| read(table.actual_opening(g)))
                 .collect(),
             blocked: gates.map(|g| read(table.gate_blocked(g)) != 0.0).collect(),
+            wall_times: component.wall_times(),
         }
     }
 }

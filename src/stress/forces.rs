@@ -34,7 +34,14 @@ pub(super) fn way(
     h: f64,
 ) -> [f64; 3] {
     match target {
-        ForceTarget::Wall(i) => working_velocity(&scene.walls[i]).map(|v| v * h),
+        ForceTarget::Wall(i) => {
+            let wall = &scene.walls[i];
+            let time = match &wall.drive {
+                Some(_) => now.wall_times[i] - before.wall_times[i],
+                None => h,
+            };
+            working_velocity(wall).map(|v| v * time)
+        }
         ForceTarget::Gate(i) => {
             let gate = &scene.gates[i];
             let moved = now.openings[i] - before.openings[i];

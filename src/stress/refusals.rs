@@ -68,8 +68,9 @@ fn variables(component: &mut Component, judge: &mut Judge) {
     let rows: Vec<_> = component.variables().rows().to_vec();
     for row in &rows {
         let count = row.len();
+        let least = row.range.map_or(f64::MIN, |(least, _)| least);
         let bad: &[f64] = match row.causality {
-            Causality::Input => &[f64::NAN, -0.1, f64::INFINITY],
+            Causality::Input => &[f64::NAN, 2.0 * least - 0.1, f64::INFINITY],
             // Some are taken, rightly; those that are not numbers never.
             Causality::Parameter => &[f64::NAN],
             Causality::Output | Causality::Independent => &[0.0],

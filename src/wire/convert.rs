@@ -191,10 +191,10 @@ pub fn point_cloud(component: &Component) -> PointCloud {
 /// # Errors
 /// Those of [`Component::get`].
 pub fn frames(component: &Component) -> Result<Vec<FrameTransform>, component::Error> {
-    let time = component.wall_time();
-    let rigid = component.scene().walls.iter().filter(|w| w.rigid);
+    let walls = component.scene().walls.iter().zip(component.wall_times());
+    let rigid = walls.filter(|(wall, _)| wall.rigid);
     let mut frames: Vec<FrameTransform> = rigid
-        .map(|wall| FrameTransform {
+        .map(|(wall, time)| FrameTransform {
             timestamp: Some(timestamp(component.time())),
             ..wall_frame(wall, time)
         })
@@ -283,6 +283,7 @@ mod tests {
                 centre: [1.0, 2.0, 0.0],
                 axis: [0.0, 0.0, 1.0],
             }),
+            drive: None,
         };
         let frame = wall_frame(&wall, 2.0);
         let (t, q) = (frame.translation.unwrap(), frame.rotation.unwrap());

@@ -12,6 +12,7 @@ mod boxes;
 mod chutes;
 mod collapse;
 mod conservation;
+mod drives;
 mod drops;
 mod films;
 mod gates;
@@ -121,6 +122,7 @@ fn advance(plan: Plan<2>, mut state: State<2>, time: f64) -> (Solver<2>, State<2
     let inputs = StepInputs {
         openings: &[],
         rates: &[],
+        drives: &[],
     };
     while state.time < time {
         solver

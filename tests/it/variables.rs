@@ -112,7 +112,7 @@ fn devices_and_gauges_bring_their_variables() {
 #[test]
 fn page_of_variables_is_not_stale() {
     let path = root().join("docs/variables.md");
-    let text = variables_markdown(&scenes("cases"));
+    let text = variables_markdown(&scenes("cases"), &scenes("tests/scenes"));
     if std::env::var_os("SANDGATE_REGENERATE").is_some() {
         std::fs::create_dir_all(root().join("docs")).unwrap();
         std::fs::write(&path, &text).unwrap();

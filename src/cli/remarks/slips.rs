@@ -16,6 +16,7 @@ pub(super) fn slips(scene: &Scene) -> Vec<String> {
     let all = materials.chain(dry_under_fluid(scene));
     let all = all.chain(frictions(scene)).chain(schedules(scene));
     all.chain(idle_inflows(scene))
+        .chain(idle_drives(scene))
         .chain(thin_outflows(scene))
         .collect()
 }
@@ -106,6 +107,13 @@ fn input(scene: &Scene, target: InputTarget) -> (String, f64, &'static str) {
             let gate = &scene.gates[k];
             (format!("gate.{}.opening", gate.name), gate.start, "start")
         }
+        InputTarget::WallDrive(k) => scene.drives().nth(k).map_or_else(
+            || (String::new(), 0.0, ""),
+            |(wall, drive)| {
+                let name = format!("wall.{}.{}", wall.name, drive.input());
+                (name, drive.start_value(), "its start")
+            },
+        ),
         InputTarget::InflowRate(k) => {
             let inflow = &scene.inflows[k];
             (format!("inflow.{}.rate", inflow.name), inflow.rate, "rate")
@@ -151,6 +159,25 @@ fn idle_inflows(scene: &Scene) -> Vec<String> {
         format!(
             "note: inflow {name}: it lets in nothing in `sandgate run`: its rate is 0 and no schedule raises it. Give inflows.{name}.rate\n  \
              or a schedule of inflow.{name}.rate, unless an orchestrator is to set it."
+        )
+    });
+    told.collect()
+}
+
+fn idle_drives(scene: &Scene) -> Vec<String> {
+    let drives = scene.drives().enumerate();
+    let idle = drives.filter(|(k, (_, drive))| {
+        let target = InputTarget::WallDrive(*k);
+        let mut schedules = scene.schedules.iter();
+        let is_told = schedules.any(|s| s.input == target && s.points.iter().any(|p| p.1 != 0.0));
+        drive.start_value() == 0.0 && !is_told
+    });
+    let told = idle.map(|(_, (wall, drive))| {
+        let name = &wall.name;
+        format!(
+            "note: wall {name}: it stands still in `sandgate run`: no schedule sets wall.{name}.{}, which is 0 at the start. Give one, unless\n  \
+             an orchestrator is to set it.",
+            drive.input()
         )
     });
     told.collect()

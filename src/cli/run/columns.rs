@@ -28,7 +28,7 @@ pub(super) struct Column {
 impl Column {
     /// Whether it is of a gauge or a device, and no element of an array.
     pub(super) fn is_of_device(&self) -> bool {
-        let device = ["gauge.", "gate.", "inflow.", "outflow."];
+        let device = ["gauge.", "gate.", "inflow.", "outflow.", "wall."];
         !self.is_element && device.iter().any(|prefix| self.name.starts_with(prefix))
     }
 }

@@ -1,6 +1,7 @@
 //! What gauges see of a simulation: particles of a material, or all, with one kind of pressure; and walls.
 
 use super::Simulation;
+use crate::component::engine::Engine as _;
 use crate::component::sampling::Sight;
 use crate::gauge::{Edge, Reading, View, is_outside};
 use crate::math::Vector;
@@ -34,7 +35,7 @@ impl<const D: usize> Simulation<D> {
         let seen = self.sampler.seen();
         let solid = self.cells(&self.solid_points(!seen.is_empty()));
         let openings = self.state.gates.iter().map(|g| g.opening);
-        let solids = self.solids.at(self.state.pose.now, openings);
+        let solids = self.solids.at(&self.wall_times(), openings);
         let shown: Vec<(Sight, Shown<D>)> = seen
             .into_iter()
             .map(|sight| (sight, self.show(sight)))

@@ -33,11 +33,12 @@ impl<const D: usize> Solids<D> {
         standing.into_iter().any(|(solid, _)| solid.holds(at, 0.0))
     }
 
-    /// All of them after the walls have moved for `time` [s], the gates at these openings.
-    pub(super) fn at(&self, time: f64, openings: impl Iterator<Item = f64>) -> Vec<Solid<D>> {
-        let walls = self.walls.iter().flat_map(|(solid, motion)| match motion {
+    /// All of them after each wall has moved for one of `times` [s], the gates at these openings.
+    pub(super) fn at(&self, times: &[f64], openings: impl Iterator<Item = f64>) -> Vec<Solid<D>> {
+        let walls = self.walls.iter().zip(times);
+        let walls = walls.flat_map(|((solid, motion), time)| match motion {
             None => vec![solid.clone()],
-            Some(motion) => moved(solid, motion, time).images(&self.sides),
+            Some(motion) => moved(solid, motion, *time).images(&self.sides),
         });
         let gates = self.gates.iter().zip(openings);
         walls.chain(gates.map(|(g, o)| plate(g, o))).collect()

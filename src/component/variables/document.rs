@@ -14,22 +14,22 @@ Every adapter shows these names: FMI 2 and 3, the C ABI, Zenoh, MCAP and `sandga
 FMI and C alone. Value references are those of FMI and C. Names in brackets, `depth[1]`, are the elements of an array; FMI 2 lists elements only, FMI 3 both.
 
 An input is held over a communication step. All outputs are sampled once, at the end of a step (and once before the
-first), so reading them is cheap and never changes anything. Gates and inflows start from the scene's own start values
+first), so reading them is cheap and never changes anything. Gates, inflows and steered walls start from the scene's own start values
 and move only in steps. A reading whose `validity` is not 0 is 0.
 
 Extensive values of a planar scene (mass, force, discharge) are for the scene's out-of-plane width, those of an
 axisymmetric scene for whole rings (there x is the radius; force_x is the sum of radial forces around the ring).
 ";
 
-/// The text of docs/variables.md for these scenes.
+/// The text of docs/variables.md for these scenes; `more` have devices that none of them has.
 #[must_use]
-pub fn variables_markdown(scenes: &[Scene]) -> String {
+pub fn variables_markdown(scenes: &[Scene], more: &[Scene]) -> String {
     let mut text = HEAD.to_owned();
     text += "\n## What each device brings\n\n";
     text +=
         "| variable | causality | kind | unit | shown in | meaning |\n|---|---|---|---|---|---|\n";
     let mut seen: Vec<String> = Vec::new();
-    for scene in scenes {
+    for scene in scenes.iter().chain(more) {
         for row in VariableTable::of(scene).rows() {
             let name = general_name(&row.name);
             if row.element_of.is_some() || seen.contains(&name) {
@@ -37,6 +37,7 @@ pub fn variables_markdown(scenes: &[Scene]) -> String {
             }
             let device = row.name.split('.').nth(1).unwrap_or_default();
             let meaning = row.description.replace(&format!(" {device}"), " NAME");
+            let meaning = meaning.replace(&format!(".{device}."), ".NAME.");
             let general = is_device(&row.name);
             let meaning = if general {
                 meaning

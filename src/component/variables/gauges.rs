@@ -188,7 +188,7 @@ impl Gauged<'_> {
 }
 
 /// Millimetres for scenes smaller than a metre.
-fn length_display(scene: &Scene) -> Option<(&'static str, f64)> {
+pub(super) fn length_display(scene: &Scene) -> Option<(&'static str, f64)> {
     let extent = (0..scene.dimension.axes())
         .map(|a| scene.domain.upper[a] - scene.domain.lower[a])
         .fold(0.0, f64::max);

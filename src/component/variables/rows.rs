@@ -4,8 +4,9 @@
 //! 0 in the order of this list: time, parameters, inputs, devices, gauges, totals.
 
 use super::{Causality, Start, ValueKind, Variability, Variable, VariableTable, gauges};
+use crate::boundary::Steers;
 use crate::component::Component;
-use crate::scene::{Adjustable, Gate, Inflow, Outflow, Scene};
+use crate::scene::{Adjustable, Gate, Inflow, Outflow, Scene, Wall, WallDrive};
 
 /// Where a row's value comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +19,7 @@ pub(in crate::component) enum Source {
     /// Inputs, by index of the device.
     GateOpening(usize),
     InflowRate(usize),
+    WallDrive(usize),
     /// Devices, by index.
     GateActualOpening(usize),
     GateBlocked(usize),
@@ -26,6 +28,8 @@ pub(in crate::component) enum Source {
     InflowBlocked(usize),
     OutflowMass(usize),
     OutflowRate(usize),
+    WallActualSpeed(usize),
+    WallActualPosition(usize),
     /// Values of a gauge's reading from the given one on, as many as the row has.
     Reading {
         gauge: usize,
@@ -80,19 +84,19 @@ impl Row {
         Self { variable, source }
     }
 
-    /// A real input with its start value and largest value; the smallest is 0.
+    /// A real input with its start value and its range.
     fn input(
         name: String,
         unit: &'static str,
         source: Source,
         start: f64,
-        most: f64,
+        (least, most): (f64, f64),
         text: String,
     ) -> Self {
         let mut row = Self::output(name, unit, source, text);
         row.variable.causality = Causality::Input;
         row.variable.start = Start::Exact(vec![start]);
-        row.within(0.0, most)
+        row.within(least, most)
     }
 
     /// Of this kind, and so changing by jumps.
@@ -136,6 +140,11 @@ pub(super) fn list(scene: &Scene) -> VariableTable {
     }
     for (i, outflow) in scene.outflows.iter().enumerate() {
         outflow_rows(i, outflow).for_each(&mut add);
+    }
+    for (i, (wall, drive)) in scene.drives().enumerate() {
+        drive_rows(i, wall, drive, gauges::length_display(scene))
+            .into_iter()
+            .for_each(&mut add);
     }
     for (i, gauge) in scene.gauges.iter().enumerate() {
         gauges::rows(scene, i, gauge).into_iter().for_each(&mut add);
@@ -187,6 +196,9 @@ fn parameter_row(i: usize, number: &Adjustable) -> Row {
 }
 
 const PERCENT: Option<(&str, f64)> = Some(("%", 100.0));
+const DEGREES: Option<(&str, f64)> = Some(("deg", 180.0 / std::f64::consts::PI));
+/// A minute.
+const TURNS: Option<(&str, f64)> = Some(("rpm", 30.0 / std::f64::consts::PI));
 
 fn gate_rows(i: usize, gate: &Gate) -> impl Iterator<Item = Row> {
     let name = &gate.name;
@@ -196,7 +208,7 @@ fn gate_rows(i: usize, gate: &Gate) -> impl Iterator<Item = Row> {
             "1",
             Source::GateOpening(i),
             gate.start,
-            1.0,
+            (0.0, 1.0),
             format!("opening wanted of gate {name}: 0 shut, 1 open; the plate follows at its largest speed"),
         )
         .display(PERCENT),
@@ -227,7 +239,7 @@ fn inflow_rows(i: usize, inflow: &Inflow) -> impl Iterator<Item = Row> {
             "kg/s",
             Source::InflowRate(i),
             inflow.rate,
-            inflow.max_rate,
+            (0.0, inflow.max_rate),
             format!("mass wanted from inflow {name} per second; what comes, row by row, is inflow.{name}.mass"),
         ),
         Row::output(
@@ -272,6 +284,66 @@ fn outflow_rows(i: usize, outflow: &Outflow) -> impl Iterator<Item = Row> {
         ),
     ]
     .into_iter()
+}
+
+fn drive_rows(
+    i: usize,
+    wall: &Wall,
+    drive: &WallDrive,
+    lengths: Option<(&'static str, f64)>,
+) -> Vec<Row> {
+    let name = &wall.name;
+    let (speed, way, sense) = match drive.turns {
+        false => (("m/s", None), ("m", lengths), "along its velocity"),
+        true => (
+            ("rad/s", TURNS),
+            ("rad", DEGREES),
+            "in the sense of its angular_velocity",
+        ),
+    };
+    let (place, (unit, display), text) = match drive.steers {
+        Steers::Rate => (
+            "speed",
+            speed,
+            format!("speed wanted of wall {name} {sense}, negative: backwards"),
+        ),
+        Steers::Way => (
+            drive.input(),
+            way,
+            format!(
+                "how far wall {name} is to be {sense} from where it is drawn; it goes there at its full speed"
+            ),
+        ),
+    };
+    let mut rows = vec![
+        Row::input(
+            format!("wall.{name}.{place}"),
+            unit,
+            Source::WallDrive(i),
+            drive.start_value(),
+            drive.range(),
+            text,
+        )
+        .display(display),
+        Row::output(
+            format!("wall.{name}.actual_speed"),
+            speed.0,
+            Source::WallActualSpeed(i),
+            format!("speed that wall {name} has {sense}"),
+        )
+        .display(speed.1),
+    ];
+    if wall.rigid {
+        let place = if drive.turns { "angle" } else { "position" };
+        let row = Row::output(
+            format!("wall.{name}.actual_{place}"),
+            way.0,
+            Source::WallActualPosition(i),
+            format!("how far wall {name} is {sense} from where it is drawn"),
+        );
+        rows.push(row.display(way.1));
+    }
+    rows
 }
 
 fn totals() -> impl Iterator<Item = Row> {

@@ -1,14 +1,14 @@
 //! Walls, gates, inflows and outflows of the drawing, each with its name.
 
 use super::{GATE, INFLOW, OUTFLOW, Svg, WALL};
-use crate::scene::{Dimension, Gate, Inflow, Outflow, Point, Scene, WallGeometry};
+use crate::scene::{Dimension, Gate, Inflow, Outflow, Point, Scene, Wall, WallGeometry};
 
 pub(super) fn draw(svg: &mut Svg<'_>, scene: &Scene) {
     for outflow in &scene.outflows {
         draw_outflow(svg, outflow);
     }
     for wall in &scene.walls {
-        draw_wall(svg, &wall.name, &wall.geometry, scene.dimension);
+        draw_wall(svg, wall, scene.dimension);
     }
     for gate in &scene.gates {
         draw_gate(svg, gate);
@@ -48,10 +48,19 @@ fn draw_outflow(svg: &mut Svg<'_>, outflow: &Outflow) {
     svg.words((corners[0].0, corners[0].1 - 2.0), INFLOW, &title);
 }
 
-fn draw_wall(svg: &mut Svg<'_>, name: &str, geometry: &WallGeometry, dimension: Dimension) {
-    let title = format!("wall {name}");
+fn draw_wall(svg: &mut Svg<'_>, wall: &Wall, dimension: Dimension) {
+    let name = &wall.name;
+    let title = match &wall.drive {
+        None => format!("wall {name}"),
+        Some(drive) => {
+            let (least, most) = drive.range();
+            let unit = drive.unit();
+            let input = drive.input();
+            format!("wall {name}: input wall.{name}.{input}, {least:.3} to {most:.3} {unit}")
+        }
+    };
     let stroke = format!("fill=\"none\" stroke=\"{WALL}\" stroke-width=\"2.5\"");
-    match geometry {
+    match &wall.geometry {
         WallGeometry::Polyline { points, closed } => {
             let corners: Vec<_> = points
                 .iter()

@@ -31,11 +31,14 @@ function figure(value) {
   return String(Number(value.toPrecision(4)));
 }
 
-// Round numbers that span the values.
+// Round numbers that span the values, three at least: with fewer nobody can read a scale.
 function ticks(low, high, count) {
   const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= rough * 0.999) || rough;
+  const sizes = [0.5, 1, 2, 5, 10].map((k) => k * power), many = (s) => Math.floor(high / s + 1e-9) - Math.ceil(low / s - 1e-9) + 1;
+  let size = sizes.findIndex((s) => s >= rough * 0.999);
+  while (size > 0 && many(sizes[size]) < 3) size -= 1;
+  const step = sizes[size] || rough;
   const first = Math.ceil(low / step - 1e-9), steps = Math.floor(high / step + 1e-9) - first;
   // Counted from 0, as k + 1 may be k where numbers are large; the bound is never reached by a span of round numbers.
   const list = [];

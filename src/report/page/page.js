@@ -36,7 +36,7 @@ function devices() {
   const groups = new Map();
   for (const column of data.columns) {
     const [kind, device] = column.name.split(".");
-    if (!["gauge", "gate", "inflow", "outflow"].includes(kind) || column.flag) continue;
+    if (!["gauge", "gate", "inflow", "outflow", "wall"].includes(kind) || column.flag) continue;
     const key = `${kind}.${device} ${column.unit}`;
     if (!groups.has(key)) groups.set(key, { title: `${kind}.${device}`, unit: column.unit, series: [] });
     groups.get(key).series.push({ name: column.name.slice(`${kind}.${device}.`.length) + (column.input ? " (input)" : ""), values: column.values, held: column.input });

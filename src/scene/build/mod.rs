@@ -27,7 +27,7 @@ use memory::check_memory;
 use overlap::check_overlap;
 use particles::{spins, state};
 use plates::{plates, with_plates};
-use walls::{movers, walls};
+use walls::{belts, drives, movers, walls};
 
 pub(super) use faces::{faces_at, planes_beside};
 pub use masses::BodyMass;
@@ -99,6 +99,8 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         source.piston = piston(scene, inflow, source, &walls);
     }
     let movers = movers(scene, &walls);
+    let belts = belts(scene, &walls);
+    let drives = drives(scene, &movers);
     let plan = Plan {
         numerics: scene.numerics.clone(),
         gravity: narrow(&scene.domain.gravity),
@@ -111,6 +113,8 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
         walls,
         ghost_depth,
         movers,
+        belts,
+        drives,
         plates,
         spins,
         sources,

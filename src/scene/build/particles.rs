@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
-use crate::boundary::RigidMotion;
+use crate::boundary::{RigidMotion, Steers};
 use crate::math::{Vector, add};
 use crate::shape::{Fill, Lattice};
 use crate::solver::{Scheme, three};
-use crate::state::{GateState, Grains, InflowState, PoseTimes, Random, RestState, State};
+use crate::state::{
+    DriveState, GateState, Grains, InflowState, PoseTimes, Random, RestState, State,
+};
 
 use super::{geometry, narrow, rigid_motion};
 use crate::scene::footing::Support;
@@ -70,6 +72,7 @@ pub(super) fn state<const D: usize>(
         next_id: grains.len() as u64,
         grains,
         pose: PoseTimes::default(),
+        drives: drives(scene),
         gates,
         inflows: vec![InflowState::default(); scene.inflows.len()],
         drained: vec![0.0; scene.outflows.len()],
@@ -81,6 +84,18 @@ pub(super) fn state<const D: usize>(
         rest: RestState::default(),
         random,
     })
+}
+
+/// Steered walls where they are drawn, at their start speed.
+fn drives(scene: &Scene) -> Vec<DriveState> {
+    let drives = scene.drives().map(|(_, drive)| DriveState {
+        rate: match drive.steers {
+            Steers::Rate => drive.start,
+            Steers::Way => 0.0,
+        },
+        ..DriveState::default()
+    });
+    drives.collect()
 }
 
 /// Particles of all bodies, in their order; their numbers are their places.

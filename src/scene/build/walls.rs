@@ -1,8 +1,8 @@
 //! Walls as points, the groups these belong to, and how walls move.
 
 use crate::boundary::{
-    End, GroupSpec, Joint, Mover, ROWS, RigidMotion, WallPoints, box_points, free_ends,
-    joined_points, plane_points, tip_points, to_centres,
+    Belt, Drive, End, GroupSpec, Joint, Mover, ROWS, RigidMotion, WallPoints, box_points,
+    free_ends, joined_points, plane_points, tip_points, to_centres,
 };
 use crate::math::{dot, norm, scale};
 use crate::solver::{PARALLEL, Periodic};
@@ -184,8 +184,10 @@ fn straight_joint(scene: &Scene, wall: usize, depth: f64) -> Option<(Joint<2>, u
     };
     let (other, arrives) = meets(scene, wall)[0]?;
     let motion = |n: usize| (scene.walls[n].velocity, scene.walls[n].rotation);
+    let is_steered = |n: usize| scene.walls[n].drive.is_some();
     let leaves = way(&points[0], &points[1]);
-    if motion(wall) != motion(other) || dot(&arrives, &leaves) <= PARALLEL {
+    let apart = motion(wall) != motion(other) || is_steered(wall) || is_steered(other);
+    if apart || dot(&arrives, &leaves) <= PARALLEL {
         return None;
     }
     let joint = Joint {
@@ -244,7 +246,35 @@ pub(super) fn movers<const D: usize>(scene: &Scene, points: &WallPoints<D>) -> V
     rigid
         .map(|(n, wall)| {
             let motion = rigid_motion(&wall.velocity, wall.rotation.as_ref());
-            Mover::new(points, n as u16, motion)
+            Mover::new(points, n as u16, motion, scene.drive_of(n))
+        })
+        .collect()
+}
+
+/// Walls whose surface slides along itself at a speed that is steered.
+pub(super) fn belts<const D: usize>(scene: &Scene, points: &WallPoints<D>) -> Vec<Belt<D>> {
+    let sliding = scene.walls.iter().enumerate().filter(|(_, w)| !w.rigid);
+    let steered = sliding.filter_map(|(n, _)| Some((n, scene.drive_of(n)?)));
+    steered
+        .map(|(n, drive)| Belt::new(points, n as u16, drive))
+        .collect()
+}
+
+/// How the walls that are steered may move.
+pub(super) fn drives<const D: usize>(scene: &Scene, movers: &[Mover<D>]) -> Vec<Drive> {
+    let drives = scene.drives().enumerate();
+    drives
+        .map(|(n, (_, drive))| Drive {
+            steers: drive.steers,
+            stops: match drive.travel.is_finite() {
+                true => (0.0, drive.travel / drive.full),
+                false => (f64::NEG_INFINITY, f64::INFINITY),
+            },
+            quickness: drive.ramp.recip(),
+            speed: {
+                let mover = movers.iter().find(|m| m.drive == Some(n));
+                mover.map_or(0.0, |m| m.travel(1.0))
+            },
         })
         .collect()
 }

@@ -9,6 +9,7 @@ mod clearance;
 mod densities;
 mod devices;
 mod domain;
+mod drives;
 mod faces;
 mod friction;
 mod full_names;
@@ -67,7 +68,7 @@ pub(super) fn lift(raw: &RawScene, source: &str, problems: &mut Problems) -> Opt
     let quality = quality.map(|word| Quality::of_word(word.value));
     let run = lift.run();
     lift.check_internal_steps(numerics.as_ref(), run);
-    let schedules = lift.schedules(&inflows);
+    let schedules = lift.schedules(&walls, &inflows);
     let log = lift.log(run);
     let (dimension, domain) = (lift.dimension, lift.domain);
     let domain = domain?;

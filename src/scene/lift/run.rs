@@ -3,13 +3,26 @@
 use super::Lift;
 use super::devices::up_to;
 use super::full_names::full_names;
-use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint, SyncWord};
-use crate::scene::types::{Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule};
+use crate::boundary::Steers;
+use crate::scene::raw::{At, InterpolationWord, List, RawSchedule, SeriesPoint, SyncWord, Text};
+use crate::scene::types::{
+    Inflow, InputTarget, Interpolation, LogSettings, Run, Schedule, Wall, WallDrive,
+};
 use crate::solver::Numerics;
 use crate::units::{Quantity, quote, shown_bound};
 
 /// Most internal steps until the end: a thousand particles take weeks for them.
 const MOST_INTERNAL_STEPS: f64 = 1e9;
+
+/// What an input of a steered wall is measured in.
+fn drive_quantity(drive: &WallDrive) -> Quantity {
+    match (drive.steers, drive.turns) {
+        (Steers::Rate, false) => Quantity::Velocity,
+        (Steers::Rate, true) => Quantity::AngularVelocity,
+        (Steers::Way, false) => Quantity::Length,
+        (Steers::Way, true) => Quantity::Angle,
+    }
+}
 
 impl Lift<'_> {
     pub(super) fn run(&mut self) -> Option<Run> {
@@ -104,12 +117,12 @@ impl Lift<'_> {
         })
     }
 
-    pub(super) fn schedules(&mut self, inflows: &[Inflow]) -> Vec<Schedule> {
+    pub(super) fn schedules(&mut self, walls: &[Wall], inflows: &[Inflow]) -> Vec<Schedule> {
         let raw = self.raw;
         let entries = raw.schedule.as_ref().map(|s| &s.value.0);
         let mut lifted: Vec<Schedule> = Vec::new();
         for at in entries.into_iter().flatten() {
-            let Some(schedule) = self.schedule(&at.value, inflows) else {
+            let Some(schedule) = self.schedule(&at.value, (walls, inflows)) else {
                 continue;
             };
             if lifted.iter().any(|s| s.input == schedule.input)
@@ -127,21 +140,30 @@ impl Lift<'_> {
         lifted
     }
 
-    fn schedule(&mut self, raw: &RawSchedule, inflows: &[Inflow]) -> Option<Schedule> {
-        let input = raw.input.as_ref().and_then(|i| self.input(i));
+    fn schedule(
+        &mut self,
+        raw: &RawSchedule,
+        (walls, inflows): (&[Wall], &[Inflow]),
+    ) -> Option<Schedule> {
+        let input = raw.input.as_ref().and_then(|i| self.input(i, walls));
         let points = raw.points.as_ref()?;
         self.check_times_ascend(points);
         let (target, name) = input?;
-        let (quantity, most) = match target {
-            InputTarget::GateOpening(_) => (Quantity::Ratio, Some(1.0)),
+        let (quantity, range) = match target {
+            InputTarget::GateOpening(_) => (Quantity::Ratio, Some((0.0, 1.0))),
             InputTarget::InflowRate(_) => {
                 let inflow = inflows.iter().find(|i| i.name == name);
-                (Quantity::MassRate, inflow.map(|i| i.max_rate))
+                (Quantity::MassRate, inflow.map(|i| (0.0, i.max_rate)))
+            }
+            InputTarget::WallDrive(_) => {
+                let wall = walls.iter().find(|w| w.name == name);
+                let drive = wall.and_then(|w| w.drive.as_ref())?;
+                (drive_quantity(drive), Some(drive.range()))
             }
         };
         let mut values = Vec::new();
         for at in &points.value.0 {
-            values.push((at.value.time, self.series_value(at, quantity, most)?));
+            values.push((at.value.time, self.series_value(at, quantity, range)?));
         }
         Some(Schedule {
             input: target,
@@ -158,7 +180,7 @@ impl Lift<'_> {
         &mut self,
         at: &At<SeriesPoint>,
         quantity: Quantity,
-        most: Option<f64>,
+        range: Option<(f64, f64)>,
     ) -> Option<f64> {
         let remedy = format!("write for example [0.5, {:?}]", quantity.example());
         let value = match at.value.value.resolve(quantity) {
@@ -169,21 +191,22 @@ impl Lift<'_> {
                 return None;
             }
         };
-        let most = most.unwrap_or(f64::INFINITY);
-        if let Some(value) = up_to(most, value)
-            && value >= 0.0
-        {
+        let (least, most) = range.unwrap_or((0.0, f64::INFINITY));
+        if let Some(value) = up_to(most, value).and_then(|value| Some(-up_to(-least, -value)?)) {
             return Some(value);
         }
-        let unit = if quantity == Quantity::Ratio {
-            ""
-        } else {
-            " kg/s"
+        let unit = match quantity {
+            Quantity::Ratio => String::new(),
+            other => format!(" {}", other.si()),
         };
         self.problems.report(
             &at.place,
             format!("a value of {value}{unit}"),
-            format!("0 to {}{unit}, the range of this input", shown_bound(most)),
+            format!(
+                "{} to {}{unit}, the range of this input",
+                shown_bound(least),
+                shown_bound(most)
+            ),
             "choose a value in this range",
         );
         None
@@ -222,10 +245,12 @@ impl Lift<'_> {
         }
     }
 
-    /// `gate.NAME.opening` or `inflow.NAME.rate`.
-    fn input<'t>(&mut self, at: &'t At<crate::scene::raw::Text>) -> Option<(InputTarget, &'t str)> {
+    /// `gate.NAME.opening`, `inflow.NAME.rate`, or the input of a steered wall.
+    fn input<'t>(&mut self, at: &'t At<Text>, walls: &[Wall]) -> Option<(InputTarget, &'t str)> {
         let raw = self.raw;
         let parts: Vec<&str> = at.value.0.split('.').collect();
+        let steered = walls.iter();
+        let steered = steered.filter_map(|w| Some((w.name.as_str(), w.drive.as_ref()?)));
         match parts[..] {
             ["gate", name, "opening"] => {
                 let index = self.index_of(name, &at.place, "gates", raw.gates.as_ref())?;
@@ -235,10 +260,18 @@ impl Lift<'_> {
                 let index = self.index_of(name, &at.place, "inflows", raw.inflows.as_ref())?;
                 Some((InputTarget::InflowRate(index), name))
             }
+            ["wall", name, what]
+                if let Some(index) = steered
+                    .clone()
+                    .position(|(wall, drive)| wall == name && drive.input() == what) =>
+            {
+                Some((InputTarget::WallDrive(index), name))
+            }
             _ => {
                 let mut known = full_names("gate", raw.gates.as_ref(), ".opening");
                 known.extend(full_names("inflow", raw.inflows.as_ref(), ".rate"));
-                let allowed = "\"gate.NAME.opening\" or \"inflow.NAME.rate\"";
+                known.extend(steered.map(|(wall, drive)| format!("wall.{wall}.{}", drive.input())));
+                let allowed = "\"gate.NAME.opening\", \"inflow.NAME.rate\" or \"wall.NAME.speed\" (position, angle) of a steered wall";
                 let ways = (allowed, "gate.main.opening");
                 self.report_full_name(&at.place, &at.value.0, ways, &known);
                 None

@@ -69,6 +69,7 @@ impl Lift<'_> {
         );
         let motion = self.motion(entry, raw, &geometry);
         let motion = motion?;
+        let drive = self.drive(raw, &motion)?;
         Some(Wall {
             name: entry.name.clone(),
             geometry,
@@ -76,6 +77,7 @@ impl Lift<'_> {
             rigid: motion.rigid,
             velocity: motion.velocity,
             rotation: motion.rotation,
+            drive,
         })
     }
 

@@ -41,6 +41,26 @@ table! {
         optional centre: Coordinates<Length>;
         /// In space: axis of rotation, of any length.
         optional axis: Coordinates<Ratio>;
+        /// Makes its motion an input, and velocity (or angular_velocity) the fastest it goes: positive inputs go their way.
+        optional input: DriveWord;
+        /// With input = "speed": speed at the start, over that of velocity or angular_velocity; 0 if left out: it stands until it is told to move.
+        optional start: Ratio, in Range::within(-1.0, 1.0);
+        /// With input = "speed": time in which it comes from a standstill to its full speed, or back; 0 s if left out: at once.
+        optional ramp: Time, in Range::from(0.0);
+        /// With input, of a rigid wall with velocity: how far it goes along it, from where it is drawn to an end stop; left out: as far as its speed takes it, also backwards.
+        optional stroke: Length, in Range::above(0.0);
+        /// With input, of a rigid wall that only turns: how far, from where it is drawn to an end stop; left out: any number of turns.
+        optional swing: Angle, in Range::above(0.0);
+    }
+}
+
+choice! {
+    /// What of a wall's motion is an input.
+    DriveWord {
+        /// its speed, wall.NAME.speed, from minus to plus the full one: a conveyor's or a drum's motor
+        "speed" => Speed,
+        /// where it is, wall.NAME.position (of one that only turns wall.NAME.angle), which it goes to at full speed: a piston, a flap
+        "position" => Position,
     }
 }
 

@@ -15,7 +15,7 @@ table! {
 table! {
     /// What an input is told over time when nobody else sets it.
     RawSchedule {
-        /// The input: gate.NAME.opening or inflow.NAME.rate.
+        /// The input: gate.NAME.opening, inflow.NAME.rate, or of a steered wall wall.NAME.speed, wall.NAME.position or wall.NAME.angle.
         required input: Text;
         /// Points [time, value] in ascending time; the first value holds before, the last after them.
         required points: List<SeriesPoint>;

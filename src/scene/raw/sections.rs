@@ -20,7 +20,7 @@ table! {
         required materials: Named<RawMaterial>;
         /// What is there at the start; a scene without bodies needs an inflow.
         optional bodies: Named<RawBody>;
-        /// Force gauges refer to them as wall.NAME.
+        /// Force gauges refer to them as wall.NAME; with the key `input` wall.NAME.speed, wall.NAME.position or wall.NAME.angle is an input.
         optional walls: Named<RawWall>;
         /// The opening is the input gate.NAME.opening; force gauges refer to gates as gate.NAME.
         optional gates: Named<RawGate>;
@@ -42,7 +42,7 @@ table! {
 table! {
     /// Extent and gravity.
     RawDomain {
-        /// Lower corner; a particle that gets more than a quarter of a spacing out of the domain other than by an outflow or a periodic side is an error.
+        /// Lower corner; a particle that gets more than a quarter of a spacing out of the domain other than by an outflow or a periodic side is an error: where some may fall beside what should catch them, lay an outflow.
         required lower: Coordinates<Length>;
         /// Upper corner.
         required upper: Coordinates<Length>;

@@ -1,6 +1,7 @@
 //! Walls, gates, inflows and outflows.
 
 use super::Point;
+use crate::boundary::Steers;
 
 /// What a wall does to material that slides along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +43,8 @@ pub struct Wall {
     pub velocity: Point,
     /// Rotation, if it turns.
     pub rotation: Option<Rotation>,
+    /// How it is steered, if it is: `velocity` and `rotation` are then those of full speed.
+    pub drive: Option<WallDrive>,
 }
 
 impl Wall {
@@ -49,7 +52,67 @@ impl Wall {
     #[must_use]
     pub fn moves_with(&self, other: &Self) -> bool {
         let motion = |w: &Self| w.rigid.then_some((w.velocity, w.rotation));
+        let is_steered = |w: &Self| w.rigid && w.drive.is_some();
         motion(self) == motion(other)
+            && (self.name == other.name || !(is_steered(self) || is_steered(other)))
+    }
+}
+
+/// How a wall is steered: along its velocity, or if it has none in the sense of its angular velocity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WallDrive {
+    /// Whether its speed or its position is the input.
+    pub steers: Steers,
+    /// Whether these are of turning.
+    pub turns: bool,
+    /// Full speed, above 0 [m/s, of turning rad/s].
+    pub full: f64,
+    /// Speed at the start over full speed [1].
+    pub start: f64,
+    /// Time from a standstill to full speed [s].
+    pub ramp: f64,
+    /// Way to the end stop, infinity if there is none [m, of turning rad].
+    pub travel: f64,
+}
+
+impl WallDrive {
+    /// The last part of the name of its input: `wall.NAME.` and this.
+    #[must_use]
+    pub fn input(&self) -> &'static str {
+        match (self.steers, self.turns) {
+            (Steers::Rate, _) => "speed",
+            (Steers::Way, false) => "position",
+            (Steers::Way, true) => "angle",
+        }
+    }
+
+    /// Smallest and largest value of its input.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        match self.steers {
+            Steers::Rate => (-self.full, self.full),
+            Steers::Way => (0.0, self.travel),
+        }
+    }
+
+    /// SI unit of its input.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        match (self.steers, self.turns) {
+            (Steers::Rate, false) => "m/s",
+            (Steers::Rate, true) => "rad/s",
+            (Steers::Way, false) => "m",
+            (Steers::Way, true) => "rad",
+        }
+    }
+
+    /// Its input at the start.
+    #[must_use]
+    pub fn start_value(&self) -> f64 {
+        match self.steers {
+            Steers::Rate => self.start * self.full,
+            Steers::Way => 0.0,
+        }
     }
 }
 

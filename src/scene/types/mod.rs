@@ -8,7 +8,7 @@ mod devices;
 mod gauges;
 mod run;
 
-pub use devices::{Gate, Inflow, Outflow, Rotation, Slip, Wall, WallGeometry};
+pub use devices::{Gate, Inflow, Outflow, Rotation, Slip, Wall, WallDrive, WallGeometry};
 pub use gauges::{ForceTarget, Gauge, GaugeKind, PressureQuantity};
 pub use run::{InputTarget, Interpolation, LogSettings, Run, Schedule};
 

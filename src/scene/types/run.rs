@@ -57,6 +57,8 @@ pub enum InputTarget {
     GateOpening(usize),
     /// Rate of an inflow, index into [`Scene::inflows`](super::Scene::inflows).
     InflowRate(usize),
+    /// Speed or position of a steered wall, index into [`Scene::drives`](super::Scene::drives).
+    WallDrive(usize),
 }
 
 /// How a schedule goes from point to point.

@@ -2,8 +2,32 @@
 
 use super::super::dice::{Dice, short};
 use super::Draft;
-use super::parts::{Scale, body, drive, force, head, material, numerics, slip, wall};
+use super::parts::{Scale, body, drive, force, head, material, numerics, schedule, slip, wall};
 use super::plane::{PARTICLES, STEPS};
+
+/// A third of the walls that move are steered: keys that go to the wall, and what its input is told until `time` [s], up to `full`.
+fn steering(dice: &mut Dice, wall: &str, full: f64, time: f64) -> (String, String) {
+    if !dice.chance(0.33) {
+        return Default::default();
+    }
+    let mut keys = "input = \"speed\"\n".to_owned();
+    if dice.chance(0.5) {
+        keys += &format!("ramp = {:?}\n", short(dice.log(0.01, 1.0) * time));
+    }
+    if dice.chance(0.5) {
+        keys += &format!("start = {:?}\n", dice.from(-1.0, 1.0));
+    }
+    let count = dice.whole(1, 6);
+    let points: Vec<[f64; 2]> = (0..count)
+        .map(|k| {
+            let at = short(time * (k as f64 + 0.9 * dice.unit()) / count as f64);
+            let share = dice.pick(&[0.0, 1.0, -1.0, 0.5, 0.03]);
+            [at, share * full.abs()]
+        })
+        .collect();
+    let kind = dice.pick(&["hold", "linear"]);
+    (keys, schedule(&format!("wall.{wall}.speed"), &points, kind))
+}
 
 /// A drum that turns.
 pub(super) fn drum(dice: &mut Dice) -> Draft {
@@ -22,17 +46,19 @@ pub(super) fn turning(dice: &mut Dice, scale: &Scale, radius: f64, rate: f64, mo
     let mut scene = head("2", &[-margin, -margin], &[margin, margin], "");
     scene += &numerics(dice, scale);
     scene += &material(dice, "sand");
+    let drive = drive(dice, scale.internal_step(), STEPS);
+    let time = drive.most_steps as f64 * scale.internal_step();
+    let (steered, told) = steering(dice, "drum", rate, time);
     let inner = short(radius * 0.99 - 0.1 * scale.spacing);
     scene += &format!(
         "[bodies.fill]\nmaterial = \"sand\"\ncircle = {{ centre = [0.0, 0.0], radius = {inner:?} }}\n{more}\n"
     );
     scene += &format!(
         "[walls.drum]\ncircle = {{ centre = [0.0, 0.0], radius = {radius:?} }}\nmotion = \"rigid\"\nangular_velocity = \
-         {rate:?}\ncentre = [0.0, 0.0]\n{}{}",
+         {rate:?}\ncentre = [0.0, 0.0]\n{steered}{}{}{told}",
         slip(dice),
         force("drum", "wall")
     );
-    let drive = drive(dice, scale.internal_step(), STEPS);
     Draft { scene, drive }
 }
 
@@ -68,12 +94,14 @@ pub(super) fn belt(dice: &mut Dice) -> Draft {
     let speed = dice.from(-3.0, 3.0);
     scale.speed = speed.abs();
     let top = short(2.5 * height + 6.0 * scale.spacing);
-    let moves = format!("velocity = [{speed:?}, 0.0]\n");
-    let mut scene = box_in_two(dice, width, top, &scale, &moves);
+    let mut drive = drive(dice, scale.internal_step(), STEPS);
+    let time = drive.most_steps as f64 * scale.internal_step();
+    let (steered, told) = steering(dice, "floor", speed, time);
+    let moves = format!("velocity = [{speed:?}, 0.0]\n{steered}");
+    let mut scene = box_in_two(dice, width, top, &scale, &moves) + &told;
     let left = short(width * dice.from(0.0, 0.4));
     let right = short(left + 0.6 * width);
     scene += &body("heap", "sand", &[left, 0.0], &[right, height], "");
-    let mut drive = drive(dice, scale.internal_step(), STEPS);
     drive.inside = vec![[0.0, 0.0], [width, 0.0], [width, top], [0.0, top]];
     Draft { scene, drive }
 }
@@ -105,12 +133,14 @@ pub(super) fn piston(dice: &mut Dice) -> Draft {
     // The piston is the right wall of a box whose floor and roof go on behind it.
     let frame = [[far, top], [0.0, top], [0.0, 0.0], [far, 0.0]];
     scene += &wall("frame", &frame, false, &slip(dice));
+    let (steered, told) = steering(dice, "piston", speed, time);
     let face = [[width, 0.0], [width, top]];
     let moves = format!(
-        "motion = \"rigid\"\nvelocity = [{speed:?}, 0.0]\n{}",
+        "motion = \"rigid\"\nvelocity = [{speed:?}, 0.0]\n{}{steered}",
         slip(dice)
     );
     scene += &wall("piston", &face, false, &moves);
+    scene += &told;
     drive.inside = vec![[0.0, 0.0], [far, 0.0], [far, top], [0.0, top]];
     Draft { scene, drive }
 }

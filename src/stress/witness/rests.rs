@@ -23,6 +23,7 @@ impl Witness<'_> {
         let told = wanted.iter().any(|(input, value)| match input {
             InputTarget::GateOpening(i) => (self.before.openings[*i] - value).abs() > 1e-6,
             InputTarget::InflowRate(_) => *value > 0.0,
+            InputTarget::WallDrive(_) => *value != 0.0,
         });
         let worked = component.steps() > self.steps;
         if told && !worked {

@@ -148,6 +148,7 @@ until = 0.1
     let inputs = StepInputs {
         openings: &[],
         rates: &[],
+        drives: &[],
     };
     while state.time < 0.05 {
         solver

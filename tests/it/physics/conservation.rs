@@ -87,6 +87,7 @@ fn run(scene: &Scene, time: f64) -> (State<2>, State<2>) {
     let inputs = StepInputs {
         openings: &[],
         rates: &[],
+        drives: &[],
     };
     while state.time < time {
         solver

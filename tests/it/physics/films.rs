@@ -69,6 +69,7 @@ until = {time}
     let inputs = StepInputs {
         openings: &[],
         rates: &[],
+        drives: &[],
     };
     let mut seen = Vec::new();
     for k in (0..snapshots).rev() {

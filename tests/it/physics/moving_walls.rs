@@ -1,6 +1,7 @@
 //! Walls that move as a whole: they push as they are pushed, material rides on them, nothing gets through.
 
 use super::{Unit, case};
+use sandgate::boundary::Course;
 use sandgate::scene::{self, Scene};
 use sandgate::solver::{Solver, StepInputs};
 use sandgate::state::State;
@@ -25,6 +26,7 @@ impl Bench {
         let inputs = StepInputs {
             openings: &[],
             rates: &[],
+            drives: &[],
         };
         while self.state.time < end - 1e-9 {
             self.solver
@@ -267,7 +269,11 @@ until = "1 s"
         );
         let (plan, _) = scene::build::<2>(&scene::parse("paddle", &text).unwrap()).unwrap();
         let (mover, mut walls) = (&plan.movers[0], plan.walls.clone());
-        mover.place(&mut walls, 0.7);
+        let after = Course {
+            way: 0.7,
+            rate: 1.0,
+        };
+        mover.place(&mut walls, after);
         let (sin, cos) = 1.05_f64.sin_cos();
         for i in 0..walls.len() {
             let [x, y] = plan.walls.position[i];

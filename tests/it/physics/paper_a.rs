@@ -56,6 +56,7 @@ fn advance<const D: usize>(plan: Plan<D>, state: &mut State<D>, time: f64) -> u6
     let inputs = StepInputs {
         openings: &[],
         rates: &[],
+        drives: &[],
     };
     while state.time < time {
         solver.step(state, time, &inputs, &mut |_, _| {}).unwrap();

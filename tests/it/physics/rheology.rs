@@ -252,6 +252,7 @@ fn run(scene: &Scene, time: f64, look: &mut dyn FnMut(&Solver<2>, &State<2>)) {
     let inputs = StepInputs {
         openings: &[],
         rates: &[],
+        drives: &[],
     };
     while state.time < time {
         solver

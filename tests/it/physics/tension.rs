@@ -48,6 +48,7 @@ until = 0.5
     let inputs = StepInputs {
         openings: &[],
         rates: &[],
+        drives: &[],
     };
     while state.time < 0.5 {
         solver.step(&mut state, 0.5, &inputs, &mut |_, _| {})?;
