@@ -50,6 +50,14 @@ impl<const D: usize> Piston<D> {
         &self.normal
     }
 
+    /// Middle of the face [m].
+    #[must_use]
+    pub fn middle(&self) -> Vector<D> {
+        self.across
+            .iter()
+            .fold(self.from, |x, a| add(&x, &scale(0.5 / dot(a, a), a)))
+    }
+
     /// How far before the face a place is whose foot is on it [m]; `None` beside it.
     #[must_use]
     pub fn ahead(&self, x: &Vector<D>) -> Option<f64> {

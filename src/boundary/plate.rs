@@ -182,6 +182,15 @@ impl<const D: usize> Plate<D> {
         }
     }
 
+    /// Its middle when it is shut [m]: what is beside it is asked for by the image that is nearest to this.
+    #[must_use]
+    pub fn middle(&self) -> Vector<D> {
+        let (along, behind) = (0.5 * self.length, -0.5 * self.thickness);
+        let middle = self.at(along, &scale(behind, &self.normal));
+        self.across
+            .map_or(middle, |(u, width)| add(&middle, &scale(0.5 * width, &u)))
+    }
+
     /// Whether a grain at `x` touches the leading edge at an opening: closer to it than `reach` spacings or up to
     /// half a spacing past it, between the plate's faces. What lies in front of a face is not in the way.
     #[must_use]

@@ -1,6 +1,6 @@
 //! Moving walls, gates and outflows: what moves and takes out between two internal steps.
 
-use crate::boundary::Course;
+use crate::boundary::{Course, Plate};
 use crate::math::{CHUNK, Vector};
 use crate::state::{DriveState, State};
 
@@ -147,7 +147,7 @@ impl<const D: usize> Solver<D> {
         let caught = |x: &Vector<D>| plate.shuts_on(x, opening, spacing);
         let speed = gap.max(TOUCH * spacing) * (self.gravity_norm / plate.thickness()).sqrt();
         let is_slow = speed < plate.max_speed && speed > 0.0;
-        if is_slow && self.stiff(state).any(caught) {
+        if is_slow && self.stiff_beside(state, plate).any(|x| caught(&x)) {
             speed
         } else {
             f64::INFINITY
@@ -158,31 +158,41 @@ impl<const D: usize> Solver<D> {
     /// pushed aside, and so are fluids that flow, of which one drop at the lip held a gate as long as it stood there.
     fn is_blocked(&self, state: &State<D>, gate: usize) -> bool {
         let (plate, opening) = (&self.plates[gate], state.gates[gate].opening);
-        let stops = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing, TOUCH);
+        let spacing = self.numerics.spacing;
+        let stops = |x: &Vector<D>| plate.stopped_by(x, opening, spacing, TOUCH);
         // What is pressed between the edge and another wall stops it from further away.
-        let squeezed = |x: &Vector<D>| plate.stopped_by(x, opening, self.numerics.spacing, PRESSED);
+        let squeezed = |x: &Vector<D>| plate.stopped_by(x, opening, spacing, PRESSED);
         let blocks = self.lists.blocks.iter().enumerate();
         let mut pushed = blocks.flat_map(|(b, block)| {
             let rows = block.wall_rows.iter().filter(|w| w.barrier > 0.0);
             rows.map(move |w| b * CHUNK + w.row as usize)
         });
-        let spacing = self.numerics.spacing;
         let mut held = vec![false; plate.pieces(spacing)];
-        for x in self.stiff(state).filter(|x| stops(x)) {
-            held[plate.piece_of(x, spacing)] = true;
+        for x in self.stiff_beside(state, plate).filter(stops) {
+            held[plate.piece_of(&x, spacing)] = true;
         }
         let share = held.iter().filter(|h| **h).count() as f64 / held.len() as f64;
-        share >= HELD || pushed.any(|i| state.grains.position.get(i).is_some_and(squeezed))
+        let middle = plate.middle();
+        share >= HELD
+            || pushed.any(|i| {
+                let place = state.grains.position.get(i);
+                place.is_some_and(|x| squeezed(&self.periodic.image(x, &middle)))
+            })
     }
 
-    /// Places of what a plate does not just push aside: all but fluids that flow.
-    fn stiff<'a>(&'a self, state: &'a State<D>) -> impl Iterator<Item = &'a Vector<D>> {
+    /// Places of what a plate does not just push aside, all but fluids that flow, by their images nearest to it.
+    fn stiff_beside<'a>(
+        &'a self,
+        state: &'a State<D>,
+        plate: &Plate<D>,
+    ) -> impl Iterator<Item = Vector<D>> + use<'a, D> {
+        let middle = plate.middle();
         let grains = &state.grains;
         let stands =
             |i: usize| !grains.drained[i] && !self.materials[usize::from(grains.phase[i])].flows();
         (0..grains.len())
             .filter(move |i| stands(*i))
-            .map(|i| &grains.position[i])
+            .map(move |i| self.periodic.image(&grains.position[i], &middle))
     }
 
     /// Counts and marks what has entered a sink; removal waits for the next lists.

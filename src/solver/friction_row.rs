@@ -146,7 +146,8 @@ impl<const D: usize> Solver<D> {
         row.bears = friction * pressure;
         // Friction takes some steps to come, so that what comes to rest does not turn round; but is all there in the first of
         // what slides and cannot come to rest in it.
-        row.stops = stopping * row.bears * trace(&row.grip);
+        // Grip is I - n n for each contact: of D - 1 directions along it.
+        row.stops = stopping * row.bears * trace(&row.grip) / (D as f64 - 1.0);
         let slides = slip > SURELY * row.stops;
         let begins = norm(&state.grains.wall_traction[i]) < 0.5 * row.bears;
         row.holds = self.materials[state.grains.phase[i] as usize].cohesion > 0.0;

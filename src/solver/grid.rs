@@ -35,6 +35,19 @@ impl<const D: usize> Periodic<D> {
         })
     }
 
+    /// The image of `x` that is nearest to a place.
+    #[must_use]
+    pub fn image(&self, x: &Vector<D>, place: &Vector<D>) -> Vector<D> {
+        std::array::from_fn(|k| {
+            let (l, d) = (self.length[k], x[k] - place[k]);
+            if l > 0.0 {
+                x[k] - l * (d / l).round()
+            } else {
+                x[k]
+            }
+        })
+    }
+
     /// The nearest image of a difference along axis k.
     #[inline(always)]
     pub(super) fn nearest<L: Lanes>(&self, lanes: L, k: usize, d: Four<L>) -> Four<L> {

@@ -80,7 +80,8 @@ impl<const D: usize> Solver<D> {
             let x = &grains.position[i];
             let inside = (0..D).all(|k| {
                 // Rings have no place behind their axis.
-                let below = if k == 0 && rings { 0.0 } else { slack };
+                let is_axis = k == 0 && rings && self.lower[0] <= 0.0;
+                let below = if is_axis { 0.0 } else { slack };
                 self.periodic.length[k] > 0.0
                     || (x[k] >= self.lower[k] - below && x[k] <= self.upper[k] + slack)
             });

@@ -11,6 +11,7 @@
 //! Symbols: k_ij = 2 V_i V_j |F|; sum_j k_ij (p_i - p_j - rho_w g.x_ij) = 0, x_ij = x_i - x_j; Dirichlet rows: p_j of fluids.
 
 mod air;
+mod closed;
 mod effective;
 mod follow;
 mod rise;
@@ -81,6 +82,8 @@ struct Row {
     given: f64,
     /// sum over saturated neighbours of k_ij p_j.
     known: f64,
+    /// Whether air or a fluid joins it.
+    open: bool,
 }
 
 /// Four neighbours of a row: what was looked up of them, k = 2 V_j |F| [1/m^2] and g.grad W_ij V_j [1/s^2].
@@ -108,8 +111,9 @@ impl<const D: usize> Solver<D> {
             values.resize(n, 0.0);
         }
         let mut pore = std::mem::take(&mut state.grains.pore_pressure);
-        let limit2 = self.start_seepage(state, &pore, &mut work);
+        let (limit2, open) = self.start_seepage(state, &pore, &mut work);
         self.iterate(&mut pore, &mut work, limit2);
+        self.pin_closed(state, &open, &mut pore);
         state.grains.pore_pressure = pore;
         self.pore = work;
     }
@@ -153,8 +157,8 @@ impl<const D: usize> Solver<D> {
         self.materials[state.grains.phase[i] as usize].is_saturated()
     }
 
-    /// Diagonal and first residual; returns the square of what the residual may be.
-    fn start_seepage(&self, state: &State<D>, pore: &[f64], work: &mut Work) -> f64 {
+    /// Diagonal and first residual; returns the square of what the residual may be, and which rows air or a fluid joins.
+    fn start_seepage(&self, state: &State<D>, pore: &[f64], work: &mut Work) -> (f64, Vec<bool>) {
         let Work {
             diagonal,
             residual,
@@ -165,7 +169,7 @@ impl<const D: usize> Solver<D> {
         self.workers.each(near, |j, of| {
             let material = &self.materials[state.grains.phase[j] as usize];
             *of = if material.is_fluid() {
-                Quad([1.0, self.pressure[j], 0.0, 0.0])
+                Quad([1.0, self.pressure[j], 0.0, 1.0])
             } else if material.is_saturated() {
                 Quad([1.0, 0.0, pore[j], 0.0])
             } else {
@@ -201,7 +205,8 @@ impl<const D: usize> Solver<D> {
                 rows[i].given.powi(2),
             ]
         });
-        limit2.max(1e-24 * given2)
+        let open = rows.iter().map(|row| row.open).collect();
+        (limit2.max(1e-24 * given2), open)
     }
 
     /// Sums of row i; `dry`: whether air reaches it.
@@ -220,18 +225,21 @@ impl<const D: usize> Solver<D> {
         let volume = self.volume[i];
         let zero = Four::splat(lanes, 0.0);
         let (mut diagonal, mut fluid, mut known, mut fall) = (zero, zero, zero, zero);
+        let mut beside_fluid = zero;
         self.for_each_four(lanes, near, block, row, |four| {
-            let [wet, pressure, pore, _] = four.of;
+            let [wet, pressure, pore, is_fluid] = four.of;
             diagonal += four.k * wet;
             fluid += four.k * pressure;
             known += four.k * pore;
             fall += four.down * wet;
+            beside_fluid += four.k * is_fluid;
         });
         // k_ij x_ij = -2 V_i g_ij.
         let mut sums = Row {
             diagonal: volume * diagonal.sum(),
             given: volume * (fluid.sum() - 2.0 * rho_w * fall.sum()),
             known: volume * known.sum(),
+            open: beside_fluid.sum() > 0.0,
         };
         if sums.diagonal > 0.0 && sums.diagonal < SURFACE * volume * self.lattice_sum && dry() {
             self.join_air(state, rho_w, &mut sums, (block, row, i));
@@ -275,6 +283,7 @@ impl<const D: usize> Solver<D> {
         let full = volume * self.lattice_sum;
         if filled < SURFACE * full && size > 0.0 {
             let joint = full - filled;
+            sums.open = true;
             sums.diagonal += joint;
             // rho_w g.(x - air).
             let head = 0.5 * self.numerics.spacing * rho_w * dot(&self.gravity, &inwards) / size;

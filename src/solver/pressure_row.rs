@@ -254,7 +254,10 @@ impl<'s, L: Lanes, const D: usize, const PLAIN: bool> PressureRow<'s, L, D, PLAI
             let share = |m: usize| same(m) * 0.5 * (damped[i] + damped[j[m] as usize]);
             alpha += self.splat(self.own_damping) * Four::gather(self.lanes, share);
         }
-        let damping = alpha * self.mean_rho(near) * along * self.to_f() * near.c;
+        // Beside what is far heavier no more than twice what its like would give, or it is too stiff for a step.
+        let lighter = self.splat(self.rho).min(near.rho);
+        let rho = self.mean_rho(near).min(lighter + lighter);
+        let damping = alpha * rho * along * self.to_f() * near.c;
         for k in 0..D {
             self.force[k] += damping * near.g[k];
         }

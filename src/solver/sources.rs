@@ -71,8 +71,8 @@ impl<const D: usize> Solver<D> {
             inflow.pending -= entered;
             inflow.admitted += entered;
             came |= entered > 0.0;
-            if free.contains(&false) && inflow.pending >= row {
-                // What cannot enter is refused, not saved up for a burst.
+            if inflow.pending >= row {
+                // What cannot enter, for what stands before it or because a step lets in one row, is refused and not saved up for a burst.
                 inflow.pending = row;
                 inflow.blocked = true;
             }

@@ -1,11 +1,12 @@
 //! How a solver begins: made for a plan, started on a fresh state, resumed on a restored one.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::boundary::{Belt, Course, Mover};
 use crate::kernel::WendlandC2;
 use crate::material::Material;
-use crate::math::{Arch, Workers, norm};
+use crate::math::{Arch, Vector, Workers, norm};
 use crate::state::State;
 
 use super::acoustic::Acoustic;
@@ -178,11 +179,19 @@ impl<const D: usize> Solver<D> {
     /// Sorts a fresh state's particles and derives everything else from it.
     pub fn start(&mut self, state: &mut State<D>) {
         self.place_walls(state);
+        let grains = &state.grains;
+        let turns = |id: &u64| self.spins.iter().any(|(ids, _)| ids.contains(id));
+        let places = grains
+            .id
+            .iter()
+            .copied()
+            .zip(grains.position.iter().copied());
+        let made: HashMap<u64, Vector<D>> = places.filter(|(id, _)| turns(id)).collect();
         self.renew_lists(state);
         // What lies as it was made has not moved.
         self.moved = Moved::default();
         self.pack(state);
-        self.set_turning(state);
+        self.set_turning(state, &made);
         if self.has_pores && self.numerics.scheme == Scheme::Implicit {
             self.sweep_kinematics(state);
             self.seep(state);
@@ -193,12 +202,17 @@ impl<const D: usize> Solver<D> {
         self.derive(state);
     }
 
-    /// Bodies that turn at the start do so about where their particles were packed to.
-    fn set_turning(&self, state: &mut State<D>) {
+    /// Bodies that turn at the start do so about where their particles were packed to, of what has crossed a periodic side by the image
+    /// beside where it was made.
+    fn set_turning(&self, state: &mut State<D>, made: &HashMap<u64, Vector<D>>) {
         let grains = &mut state.grains;
         for (ids, motion) in &self.spins {
             for i in (0..grains.len()).filter(|i| ids.contains(&grains.id[*i])) {
-                grains.velocity[i] = motion.velocity_at(&grains.position[i], 0.0);
+                let x = &grains.position[i];
+                let place = made
+                    .get(&grains.id[i])
+                    .map_or(*x, |near| self.periodic.image(x, near));
+                grains.velocity[i] = motion.velocity_at(&place, 0.0);
             }
         }
     }

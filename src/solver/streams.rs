@@ -68,8 +68,9 @@ impl<const D: usize> Solver<D> {
         let spacing = self.numerics.spacing;
         let reach = (advance + BEFORE) * spacing;
         let (mut count, mut sum) = (0, 0.0);
+        let middle = piston.middle();
         for (x, p) in state.grains.position.iter().zip(&self.pressure) {
-            let Some(ahead) = piston.ahead(x) else {
+            let Some(ahead) = piston.ahead(&self.periodic.image(x, &middle)) else {
                 continue;
             };
             if ahead > 0.0 && ahead < reach {

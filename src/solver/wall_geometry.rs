@@ -79,7 +79,9 @@ impl<const D: usize> Solver<D> {
         let group = self.walls.group[wall as usize] as usize;
         let gate = group.checked_sub(self.fixed_groups);
         if let Some(g) = gate {
-            return self.plates[g].normal_at(xi, state.gates[g].opening);
+            let plate = &self.plates[g];
+            let xi = self.periodic.image(xi, &plate.middle());
+            return plate.normal_at(&xi, state.gates[g].opening);
         }
         let end = self.walls.end_of(wall as usize);
         let beside = end.and_then(|e| e.normal_at(&self.periodic.difference(xi, &e.point)));

@@ -35,6 +35,7 @@ mod rheology;
 mod ring_sections;
 mod roofs;
 mod seams;
+mod sides;
 mod silo;
 mod slices;
 mod tension;

@@ -2,10 +2,17 @@
 
 use super::length;
 use crate::material::Law;
-use crate::scene::{InputTarget, Scene, Slip};
+use crate::math::{dot, norm};
+use crate::scene::{InputTarget, Scene, Slip, Wall, WallGeometry};
 
 /// Densities that materials have [kg/m^3]: less is g/cm^3 meant, or a gas; nothing is heavier than osmium.
 const DENSITIES: std::ops::RangeInclusive<f64> = 100.0..=25_000.0;
+
+/// Spacings across an outlet from which on the rate of grains is about right [1].
+const LEAST_OUTLET: f64 = 8.0;
+
+/// Share of its volume by which material may be squeezed by its weight before forces are those of a spring [1].
+const SQUEEZED: f64 = 0.05;
 
 /// Wall friction that is seldom found [1]: the tangent of 56 deg.
 const ROUGH: f64 = 1.5;
@@ -16,6 +23,8 @@ pub(super) fn slips(scene: &Scene) -> Vec<String> {
     let all = materials.chain(dry_under_fluid(scene));
     let all = all.chain(frictions(scene)).chain(schedules(scene));
     all.chain(idle_inflows(scene))
+        .chain(high_inflows(scene))
+        .chain(narrow_gates(scene))
         .chain(idle_drives(scene))
         .chain(thin_outflows(scene))
         .collect()
@@ -160,6 +169,56 @@ fn idle_inflows(scene: &Scene) -> Vec<String> {
             "note: inflow {name}: it lets in nothing in `sandgate run`: its rate is 0 and no schedule raises it. Give inflows.{name}.rate\n  \
              or a schedule of inflow.{name}.rate, unless an orchestrator is to set it."
         )
+    });
+    told.collect()
+}
+
+/// Inflows that could fill a scene deeper than its sound speed, which follows from what is there at the start, is for.
+fn high_inflows(scene: &Scene) -> Vec<String> {
+    let (up, g) = (scene.up(), norm(&scene.domain.gravity));
+    let (c0, wide) = (scene.numerics.sound_speed, |x: &[f64; 2]| [x[0], x[1], 0.0]);
+    let lowest = |wall: &Wall| match &wall.geometry {
+        WallGeometry::Polyline { points, .. } => {
+            let heights = points.iter().map(|x| dot(&wide(x), &up));
+            heights.fold(f64::INFINITY, f64::min)
+        }
+        WallGeometry::Box { lower, upper } => dot(lower, &up).min(dot(upper, &up)),
+        WallGeometry::Plane { point, .. } => dot(point, &up),
+    };
+    let floor = scene.walls.iter().map(lowest).fold(f64::INFINITY, f64::min);
+    let told = scene.inflows.iter().filter_map(|inflow| {
+        let depth = dot(&inflow.from, &up).max(dot(&inflow.to, &up)) - floor;
+        let squeezed = g * depth / (c0 * c0);
+        (depth.is_finite() && squeezed > SQUEEZED).then(|| {
+            format!(
+                "note: inflow {}: its face is {} above the lowest wall, and material as deep would be squeezed by {:.0} % of its volume by its\n  \
+                 weight: the sound speed, {:.3} m/s, is for {} of it. If it gets much deeper than that, give numerics.expected_speed = {:.3}.",
+                inflow.name,
+                length(depth),
+                100.0 * squeezed,
+                c0,
+                length(0.01 * c0 * c0 / g),
+                (g * depth).sqrt(),
+            )
+        })
+    });
+    told.collect()
+}
+
+/// Gates too narrow for grains to pass as they should.
+fn narrow_gates(scene: &Scene) -> Vec<String> {
+    let has_grains = scene.materials.iter().any(|m| !m.material.is_fluid());
+    let gates = scene.gates.iter().filter(|_| has_grains);
+    let told = gates.filter_map(|gate| {
+        let way: [f64; 3] = std::array::from_fn(|k| gate.to[k] - gate.from[k]);
+        let spacings = norm(&way) / scene.numerics.spacing;
+        (spacings < LEAST_OUTLET - 1e-9).then(|| {
+            format!(
+                "note: gate {}: open it is {:.1} spacings wide; grains pass openings below {LEAST_OUTLET} more slowly than they should, and below 4 hardly at\n  \
+                 all (docs/limits.md). Lower numerics.spacing, or take it for a switch and not for a valve.",
+                gate.name, spacings,
+            )
+        })
     });
     told.collect()
 }
@@ -331,7 +390,39 @@ points = [[0, 0.5], [0.5, 1]]
     }
 
     #[test]
+    fn inflows_from_far_above_what_the_sound_speed_is_for_are_told() {
+        one(
+            &[
+                ("from = [0.2, 0.5]", "from = [0.2, 0.58]"),
+                ("to = [0.1, 0.5]", "to = [0.1, 0.58]"),
+            ],
+            &[
+                "inflow feed",
+                "0.58 m above",
+                "by 6 %",
+                "10.000 m/s, is for 0.101",
+                "expected_speed = 2.385",
+            ],
+        );
+    }
+
+    #[test]
+    fn outlets_of_few_spacings_are_told() {
+        one(
+            &[("to = [0.3, 0.3]", "to = [0.3, 0.07]")],
+            &["gate main", "7.0 spacings", "numerics.spacing"],
+        );
+    }
+
+    #[test]
     fn devices_that_do_nothing_or_may_miss_something_are_told() {
+        one(
+            &[(
+                "slip = \"friction\"",
+                "velocity = [1, 0]\ninput = \"speed\"\nslip = \"friction\"",
+            )],
+            &["wall bed", "no schedule sets wall.bed.speed"],
+        );
         one(&[("rate = 1\n", "")], &["inflow feed", "inflows.feed.rate"]);
         let fed =
             "[[schedule]]\ninput = \"inflow.feed.rate\"\npoints = [[0, 0], [1, 0.5]]\n[[schedule]]";

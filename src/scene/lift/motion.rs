@@ -7,6 +7,9 @@ use crate::scene::raw::{
 };
 use crate::scene::types::{Point, Rotation, WallGeometry};
 
+/// Share of a belt's velocity that may be across its surface [1].
+const ASKEW: f64 = 1e-3;
+
 /// What a table says of rotation.
 pub(super) struct Turning<'a> {
     /// What turns, with its article.
@@ -34,7 +37,7 @@ impl Lift<'_> {
         geometry: &WallGeometry,
     ) -> Option<Motion> {
         let rigid = raw.motion.as_ref()?.value == MotionWord::Rigid;
-        let velocity = match &raw.velocity {
+        let mut velocity = match &raw.velocity {
             Some(at) => self.vector(at)?,
             None => [0.0; 3],
         };
@@ -49,7 +52,7 @@ impl Lift<'_> {
             if rigid {
                 self.check_rigid(&at.place, geometry, velocity);
             } else {
-                self.check_belt(&at.place, geometry, velocity);
+                velocity = self.along_belt(&at.place, geometry, velocity);
             }
         }
         if let (Some(at), Some(rotation)) = (&raw.angular_velocity, rotation) {
@@ -234,8 +237,8 @@ impl Lift<'_> {
         }
     }
 
-    /// The velocity of a belt lies in its surface.
-    fn check_belt(&mut self, place: &Place, geometry: &WallGeometry, velocity: Point) {
+    /// The velocity of a belt lies in its surface: what is across it because directions were written with few digits is taken away.
+    fn along_belt(&mut self, place: &Place, geometry: &WallGeometry, velocity: Point) -> Point {
         let speed = length(&velocity);
         let across = match geometry {
             WallGeometry::Plane { normal, .. } => dot(&velocity, normal).abs(),
@@ -260,13 +263,32 @@ impl Lift<'_> {
                 "begin the wall at a radius above 0, or set the first component to 0",
             );
         }
-        if across > 1e-6 * speed {
+        if across > ASKEW * speed {
             self.problems.report(
                 place,
                 format!("a velocity with {across} m/s across the surface"),
                 "a velocity along the wall's surface (a belt): straight polylines and planes only",
                 "turn it along the wall; for a wall that moves as a whole set motion = \"rigid\"",
             );
+        }
+        let normal = surface_normal(geometry);
+        let across = dot(&velocity, &normal);
+        std::array::from_fn(|k| velocity[k] - across * normal[k])
+    }
+}
+
+/// Unit normal of a straight surface; 0 of a box.
+fn surface_normal(geometry: &WallGeometry) -> Point {
+    match geometry {
+        WallGeometry::Plane { normal, .. } => *normal,
+        WallGeometry::Box { .. } => [0.0; 3],
+        WallGeometry::Polyline { points, .. } => {
+            let way = [
+                points[1][0] - points[0][0],
+                points[1][1] - points[0][1],
+                0.0,
+            ];
+            normalized(&way).map_or([0.0; 3], |[x, y, _]| [-y, x, 0.0])
         }
     }
 }

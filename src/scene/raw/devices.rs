@@ -85,7 +85,7 @@ table! {
         optional span: Coordinates<Length>;
         /// Depth of the plate behind its face, at least 4 spacings; 4 spacings if left out.
         optional thickness: Length, in Range::above(0.0);
-        /// Largest speed of the plate. Above c0/7 (with courant 0.7) it may be held to that: it moves 0.1 h a step at most. With grains in an opening w it closes at w sqrt(g/thickness) at most, and is `blocked` then.
+        /// Largest speed of the plate. Above c0/7 (with courant 0.7) it may be held to that: it moves 0.1 h a step at most. With grains in an opening w it closes at w sqrt(g/thickness) at most, where there is gravity, and is `blocked` then.
         optional max_speed: Speed, in Range::above(0.0), default "0.5 m/s";
         /// Opening at the start: 0 closed, 1 open.
         optional start: Ratio, in Range::within(0.0, 1.0), default 0;

@@ -87,7 +87,9 @@ impl<const D: usize> Solver<D> {
             } else {
                 solid += share;
             }
-            let holds = material.grains.pore_density == fluid.rest_density()
+            let other = material.grains.pore_density - fluid.rest_density();
+            // A density that went through a solid fraction is off by rounding.
+            let holds = other.abs() <= 1e-9 * fluid.rest_density()
                 && material.rest_density() > fluid.rest_density();
             // Of two as near, the one straight above.
             let beside = (distance * distance - height * height).max(0.0).sqrt();

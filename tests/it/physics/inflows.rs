@@ -280,6 +280,42 @@ fn a_face_in_the_open_under_material_is_blocked() {
     assert_eq!(unit.get("inflow.feed.blocked"), 1.0);
 }
 
+/// A stream that goes further than a spacing in an internal step is told to lack what cannot come in, and saves nothing up: it came for long after
+/// the rate was lowered.
+#[test]
+fn a_stream_too_fast_for_its_steps_says_so_and_saves_nothing_up() {
+    let mut unit = unit(&[
+        (
+            IN_WALL,
+            "polyline = [[0.1, 0.3], [0.1, 0], [1, 0], [1, -0.1]]",
+        ),
+        (
+            "from = [0, 0.12]\nto = [0, 0]",
+            "from = [0.2, 0.28]\nto = [0.2, 0.22]",
+        ),
+        (
+            "velocity = [0.8333333333, 0]\nrate = 99.99",
+            "velocity = [20, 0]\nrate = 1150",
+        ),
+        ("expected_speed = 2", "sound_speed = 15"),
+        ("upper = [2, 0.4]", "upper = [9, 0.4]"),
+        ("upper = [2, -0.2]", "upper = [9, -0.2]"),
+        (
+            "[outflows.end]",
+            "[outflows.far]\nlower = [1.2, -0.2]\nupper = [9, 0.4]\n[outflows.end]",
+        ),
+    ]);
+    unit.run_to(0.2);
+    assert_eq!(unit.get("inflow.feed.blocked"), 1.0);
+    assert!(unit.get("inflow.feed.actual_rate") < 1140.0);
+    unit.set("inflow.feed.rate", 70.0);
+    unit.run_to(0.24);
+    let before = unit.get("inflow.feed.mass");
+    unit.run_to(0.44);
+    let rate = (unit.get("inflow.feed.mass") - before) / 0.2;
+    assert!((rate / 70.0 - 1.0).abs() < 0.2, "{rate} kg/s");
+}
+
 /// What comes in has room: a face within a wall's rows of points, or within a plate as it starts, is refused by name.
 #[test]
 fn an_inflow_inside_a_wall_or_a_shut_gate_is_refused() {
