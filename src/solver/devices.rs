@@ -15,19 +15,25 @@ const HELD: f64 = 0.5;
 const TOUCH: f64 = 0.25;
 const PRESSED: f64 = 0.75;
 
-/// A box that takes particles out.
+/// What takes particles out.
 #[derive(Clone, Copy, Debug)]
 pub struct Sink<const D: usize> {
-    /// Lower corner [m].
+    /// Lower corner of a box [m].
     pub lower: Vector<D>,
     /// Upper corner [m].
     pub upper: Vector<D>,
+    /// Whether it takes what is outside of the box, and not what is in it.
+    pub outside: bool,
 }
 
 impl<const D: usize> Sink<D> {
-    /// Whether a place is in the box, its sides included.
+    /// Whether it takes what is at a place, in the box or on its sides, or beyond them.
     #[must_use]
     pub fn holds(&self, x: &Vector<D>) -> bool {
+        if self.outside {
+            // What is nowhere is lost, and not taken.
+            return (0..D).any(|k| x[k] < self.lower[k] || x[k] > self.upper[k]);
+        }
         (0..D).all(|k| x[k] >= self.lower[k] && x[k] <= self.upper[k])
     }
 }

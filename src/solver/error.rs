@@ -24,7 +24,7 @@ pub enum SolverError {
     },
     /// A particle left the domain other than by an outflow.
     #[error(
-        "particle {particle} left the domain at t = {time} s, at {position:?} m with velocity {velocity:?} m/s; add a wall or an outflow there, or enlarge the domain"
+        "particle {particle} left the domain at t = {time} s, at {position:?} m with velocity {velocity:?} m/s; add a wall or an outflow there (one with outside = true takes all that leaves), or enlarge the domain"
     )]
     Lost {
         /// Persistent number of the particle.

@@ -88,6 +88,7 @@ pub use error::SolverError;
 pub use grid::Periodic;
 pub use handed::Handed;
 pub use lists::SHORTEST_PERIOD;
+pub use motion::SLACK;
 pub use numerics::{Numerics, Rotation, Scheme, YieldForm};
 pub use outputs::three;
 pub use paper_a::{PaperA, Sweeps};

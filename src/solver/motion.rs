@@ -8,7 +8,7 @@ use super::{Solver, SolverError};
 
 /// How far beyond the domain a particle may be, over the spacing: as far as boxes and sections that end on a wall's face reach behind it.
 /// What a wall on the domain's side holds under tension may be drawn into its face by some hundredths.
-const SLACK: f64 = 0.25;
+pub const SLACK: f64 = 0.25;
 
 impl<const D: usize> Solver<D> {
     /// v and x to the end of the step (symplectic Euler; `last` is its last acoustic step), and what diffusion and shifting do to

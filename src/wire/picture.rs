@@ -8,7 +8,7 @@ use super::foxglove::{
     Color, CubePrimitive, KeyValuePair, LinePrimitive, LineType, Point3, Pose, Quaternion,
     SceneEntity, SceneUpdate, TextPrimitive, Vector3,
 };
-use crate::scene::{Gate, Gauge, GaugeKind, Point, Scene, Wall, WallGeometry};
+use crate::scene::{Gate, Gauge, GaugeKind, OutflowPlace, Point, Scene, Wall, WallGeometry};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3 as V3};
 
 const WALL: Color = color(0.35, 0.35, 0.38, 1.0);
@@ -31,10 +31,11 @@ pub fn scene_update(scene: &Scene, time: f64) -> SceneUpdate {
         entities.push(entity);
     }
     for outflow in &scene.outflows {
+        let OutflowPlace::Box { lower, upper } = outflow.place else {
+            continue;
+        };
         let mut entity = artist.entity(format!("outflow.{}", outflow.name), WORLD.to_owned());
-        entity
-            .cubes
-            .push(artist.bounds(outflow.lower, outflow.upper, OUTFLOW));
+        entity.cubes.push(artist.bounds(lower, upper, OUTFLOW));
         entities.push(entity);
     }
     entities.extend(scene.gauges.iter().map(|gauge| artist.gauge(gauge)));

@@ -5,7 +5,7 @@ use crate::cli::run::short;
 use crate::component::{Component, StaysAwake};
 use crate::material::{Grains, Law, Material, MuI};
 use crate::math::norm;
-use crate::scene::{Dimension, ForceTarget, GaugeKind, Scene, Slip, WallGeometry};
+use crate::scene::{Dimension, ForceTarget, GaugeKind, OutflowPlace, Scene, Slip, WallGeometry};
 use crate::solver::Scheme;
 
 /// Particles, walls, devices, gauges and what is not used.
@@ -241,7 +241,11 @@ fn parts(scene: &Scene, component: &Component) -> Vec<String> {
         ));
     }
     for outflow in &scene.outflows {
-        lines.push(format!("outflow  {}", outflow.name));
+        let place = match outflow.place {
+            OutflowPlace::Box { .. } => "",
+            OutflowPlace::Outside => ": of all that leaves the domain",
+        };
+        lines.push(format!("outflow  {}{place}", outflow.name));
     }
     for gauge in &scene.gauges {
         lines.push(format!(

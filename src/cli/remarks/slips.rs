@@ -3,7 +3,7 @@
 use super::length;
 use crate::material::Law;
 use crate::math::{dot, norm};
-use crate::scene::{InputTarget, Scene, Slip, Wall, WallGeometry};
+use crate::scene::{InputTarget, OutflowPlace, Scene, Slip, Wall, WallGeometry};
 
 /// Densities that materials have [kg/m^3]: less is g/cm^3 meant, or a gas; nothing is heavier than osmium.
 const DENSITIES: std::ops::RangeInclusive<f64> = 100.0..=25_000.0;
@@ -247,7 +247,10 @@ fn thin_outflows(scene: &Scene) -> Vec<String> {
     let spacing = scene.numerics.spacing;
     let told = scene.outflows.iter().filter_map(|outflow| {
         let axes = 0..scene.dimension.axes();
-        let sides = axes.map(|k| outflow.upper[k] - outflow.lower[k]);
+        let OutflowPlace::Box { lower, upper } = outflow.place else {
+            return None;
+        };
+        let sides = axes.map(|k| upper[k] - lower[k]);
         let thickness = sides.fold(f64::INFINITY, f64::min);
         (thickness < spacing * (1.0 - 1e-9)).then(|| {
             format!(

@@ -1,7 +1,9 @@
 //! Walls, gates, inflows and outflows of the drawing, each with its name.
 
 use super::{GATE, INFLOW, OUTFLOW, Svg, WALL};
-use crate::scene::{Dimension, Gate, Inflow, Outflow, Point, Scene, Wall, WallGeometry};
+use crate::scene::{
+    Dimension, Gate, Inflow, Outflow, OutflowPlace, Point, Scene, Wall, WallGeometry,
+};
 
 pub(super) fn draw(svg: &mut Svg<'_>, scene: &Scene) {
     for outflow in &scene.outflows {
@@ -39,7 +41,11 @@ fn rectangle(svg: &Svg<'_>, lower: Point, upper: Point) -> Vec<(f64, f64)> {
 }
 
 fn draw_outflow(svg: &mut Svg<'_>, outflow: &Outflow) {
-    let corners = rectangle(svg, outflow.lower, outflow.upper);
+    let (lower, upper) = match outflow.place {
+        OutflowPlace::Box { lower, upper } => (lower, upper),
+        OutflowPlace::Outside => (svg.view.lower, svg.view.upper),
+    };
+    let corners = rectangle(svg, lower, upper);
     let style = format!(
         "fill=\"{OUTFLOW}\" fill-opacity=\"0.2\" stroke=\"{OUTFLOW}\" stroke-dasharray=\"5 3\""
     );

@@ -14,13 +14,13 @@ mod walls;
 
 use crate::boundary::{Plate, WallPoints};
 use crate::math::{Geometry, Vector};
-use crate::solver::{Moment, Periodic, Plan, Scheme, Sink};
+use crate::solver::{Moment, Periodic, Plan, SLACK, Scheme, Sink};
 use crate::state::State;
 
 use super::elements::elements;
 use super::footing::Support;
 use super::ghosts::ghost_depth;
-use super::{Dimension, ForceTarget, Point, Scene};
+use super::{Dimension, ForceTarget, OutflowPlace, Point, Scene};
 use inflows::{piston, source};
 use joins::{Standing, join_boxes};
 use memory::check_memory;
@@ -67,10 +67,7 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     let sinks = scene
         .outflows
         .iter()
-        .map(|o| Sink {
-            lower: narrow(&o.lower),
-            upper: narrow(&o.upper),
-        })
+        .map(|o| sink(scene, o.place))
         .collect();
     let ghost_depth = match scene.numerics.scheme {
         Scheme::PaperA(_) => ghost_depth(scene, &walls),
@@ -123,6 +120,34 @@ pub fn build<const D: usize>(scene: &Scene) -> Result<(Plan<D>, State<D>), Strin
     };
     check_overlap(scene, &plan, &state)?;
     Ok((plan, state))
+}
+
+/// An outflow; what is outside of the domain is so by the slack that all else has, and not beyond a periodic side or the axis of rings.
+fn sink<const D: usize>(scene: &Scene, place: OutflowPlace) -> Sink<D> {
+    let domain = &scene.domain;
+    let (lower, upper, outside) = match place {
+        OutflowPlace::Box { lower, upper } => (lower, upper, false),
+        OutflowPlace::Outside => {
+            let rings = scene.dimension == Dimension::Axisymmetric;
+            let slack = SLACK * scene.numerics.spacing;
+            let is_open = |k: usize| !domain.periodic[k];
+            let lower = |k: usize| match is_open(k) && !(rings && k == 0 && domain.lower[0] <= 0.0)
+            {
+                true => domain.lower[k] - slack,
+                false => f64::NEG_INFINITY,
+            };
+            let upper = |k: usize| match is_open(k) {
+                true => domain.upper[k] + slack,
+                false => f64::INFINITY,
+            };
+            (std::array::from_fn(lower), std::array::from_fn(upper), true)
+        }
+    };
+    Sink {
+        lower: narrow(&lower),
+        upper: narrow(&upper),
+        outside,
+    }
 }
 
 /// Points of walls and gates that what is there at the start may stand on or lie under; a chain of short segments has many of little weight.

@@ -5,7 +5,7 @@ use super::faces::{Face, example_of_span};
 use super::geometry::Region;
 use crate::math::{cross, dot, length, normalized, sub};
 use crate::scene::raw::{Entry, Place, RawInflow, RawOutflow};
-use crate::scene::types::{Inflow, NamedMaterial, Outflow, Point};
+use crate::scene::types::{Inflow, NamedMaterial, Outflow, OutflowPlace, Point};
 
 /// How far above its bound a number may be by rounding, over the bound [1].
 const ROUNDING: f64 = 1e-9;
@@ -153,6 +153,23 @@ impl Lift<'_> {
     }
 
     fn outflow(&mut self, entry: &Entry<RawOutflow>, raw: &RawOutflow) -> Option<Outflow> {
+        if let Some(outside) = raw.outside.as_ref().filter(|at| at.value.0) {
+            return self.outside(&outside.place, entry, raw);
+        }
+        for key in ["lower", "upper"] {
+            if !raw.given.contains(&key) {
+                self.problems.report(
+                    &entry.place,
+                    format!("an outflow without {key}"),
+                    "lower and upper, the corners of a box, or outside = true",
+                    if self.planar() {
+                        "add for example lower = [0, -0.1] and upper = [1, 0]"
+                    } else {
+                        "add for example lower = [0, 0, -0.1] and upper = [1, 1, 0]"
+                    },
+                );
+            }
+        }
         let (lower, upper) = self.corners(raw.lower.as_ref(), raw.upper.as_ref())?;
         self.check_inside(&raw.lower.as_ref()?.place, lower);
         self.check_inside(&raw.upper.as_ref()?.place, upper);
@@ -170,8 +187,38 @@ impl Lift<'_> {
         self.drains.push((entry.place.clone(), region));
         Some(Outflow {
             name: entry.name.clone(),
-            lower,
-            upper,
+            place: OutflowPlace::Box { lower, upper },
+        })
+    }
+
+    /// The outflow of all that leaves the domain: the only one, and no box.
+    fn outside(
+        &mut self,
+        place: &Place,
+        entry: &Entry<RawOutflow>,
+        raw: &RawOutflow,
+    ) -> Option<Outflow> {
+        for corner in [&raw.lower, &raw.upper].into_iter().flatten() {
+            self.problems.report(
+                &corner.place,
+                "a corner of an outflow with outside = true",
+                "lower and upper, or outside = true",
+                "delete it, or make two outflows of it",
+            );
+        }
+        let others = Self::readable(self.raw.outflows.as_ref()).into_iter();
+        let mut before = others.take_while(|(other, _)| other.name != entry.name);
+        if before.any(|(_, other)| other.outside.as_ref().is_some_and(|at| at.value.0)) {
+            self.problems.report(
+                place,
+                "a second outflow with outside = true",
+                "one at most, so that each particle is counted once",
+                "delete one of them",
+            );
+        }
+        Some(Outflow {
+            name: entry.name.clone(),
+            place: OutflowPlace::Outside,
         })
     }
 }

@@ -115,11 +115,13 @@ table! {
 }
 
 table! {
-    /// A box in which particles are taken out and counted.
+    /// Where particles are taken out and counted: a box, or all that is outside of the domain.
     RawOutflow {
-        /// Lower corner.
-        required lower: Coordinates<Length>;
+        /// Lower corner of a box.
+        optional lower: Coordinates<Length>;
         /// Upper corner.
-        required upper: Coordinates<Length>;
+        optional upper: Coordinates<Length>;
+        /// true: whatever leaves the domain, other than by a periodic side, is taken out; without such an outflow that is an error.
+        optional outside: Flag;
     }
 }

@@ -42,7 +42,7 @@ table! {
 table! {
     /// Extent and gravity.
     RawDomain {
-        /// Lower corner; a particle that gets more than a quarter of a spacing out of the domain other than by an outflow or a periodic side is an error: where some may fall beside what should catch them, lay an outflow.
+        /// Lower corner; a particle that gets more than a quarter of a spacing out of the domain other than by an outflow or a periodic side is an error: where some may fall beside what should catch them, give an outflow with `outside = true`.
         required lower: Coordinates<Length>;
         /// Upper corner.
         required upper: Coordinates<Length>;

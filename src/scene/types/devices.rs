@@ -201,13 +201,25 @@ pub struct Inflow {
     pub max_rate: f64,
 }
 
-/// A box in which particles are taken out and counted.
+/// Where particles are taken out and counted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outflow {
     /// Name in the scene file: outputs `outflow.NAME.mass` and `outflow.NAME.rate`.
     pub name: String,
-    /// Lower corner [m].
-    pub lower: Point,
-    /// Upper corner [m].
-    pub upper: Point,
+    /// Where it is.
+    pub place: OutflowPlace,
+}
+
+/// Where an outflow is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OutflowPlace {
+    /// A box.
+    Box {
+        /// Lower corner [m].
+        lower: Point,
+        /// Upper corner [m].
+        upper: Point,
+    },
+    /// All that is outside of the domain.
+    Outside,
 }

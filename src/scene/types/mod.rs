@@ -8,7 +8,9 @@ mod devices;
 mod gauges;
 mod run;
 
-pub use devices::{Gate, Inflow, Outflow, Rotation, Slip, Wall, WallDrive, WallGeometry};
+pub use devices::{
+    Gate, Inflow, Outflow, OutflowPlace, Rotation, Slip, Wall, WallDrive, WallGeometry,
+};
 pub use gauges::{ForceTarget, Gauge, GaugeKind, PressureQuantity};
 pub use run::{InputTarget, Interpolation, LogSettings, Run, Schedule};
 

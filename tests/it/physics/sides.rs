@@ -134,3 +134,61 @@ until = "1 s"
     println!("innermost {innermost} m");
     assert!(innermost < 0.1 && innermost > 0.0975, "{innermost}");
 }
+
+/// What leaves the domain other than by a periodic side is taken out and counted by an outflow with `outside = true`, in the plane, of rings and in
+/// space; without one it ends the run, by name.
+#[test]
+fn what_leaves_is_counted_where_a_scene_asks_for_it() {
+    for dimension in ["2", "\"axisymmetric\"", "3"] {
+        let (corner, middle, size) = match dimension {
+            "3" => ("[0, 0, 0]", "[0.15, 0.1, 0.1]", "[0.2, 0.1, 0.2]"),
+            _ => ("[0, 0]", "[0.15, 0.1]", "[0.2, 0.2]"),
+        };
+        let (periodic, start, velocity) = match dimension {
+            "3" => ("periodic = [\"y\"]", "[0.05, 0, 0.05]", "[1, 0.3, 1]"),
+            "2" => ("", "[0.05, 0.05]", "[1, 1]"),
+            _ => ("", "[0.05, 0.05]", "[0, 1]"),
+        };
+        let scene = |spill: &str| {
+            let text = format!(
+                r#"
+name = "thrown"
+dimension = {dimension}
+[domain]
+lower = {corner}
+upper = {size}
+{periodic}
+[numerics]
+spacing = "10 mm"
+expected_speed = 2
+[materials.sand]
+law = "mu_i"
+preset = "sand_04"
+[bodies.block]
+material = "sand"
+box = {{ lower = {start}, upper = {middle} }}
+velocity = {velocity}
+{spill}
+[run]
+step = "10 ms"
+until = "1 s"
+"#
+            );
+            scene::parse("thrown", &text).unwrap_or_else(|e| panic!("{e}"))
+        };
+        let mut unit = Unit::new(&scene("[outflows.spill]\noutside = true"));
+        let mass = unit.get("mass.present");
+        unit.run_to(0.05);
+        assert_eq!(unit.get("outflow.spill.mass"), 0.0, "{dimension}");
+        unit.run_to(0.5);
+        assert_eq!(unit.get("outflow.spill.mass"), mass, "{dimension}");
+        assert_eq!(unit.get("solver.particles"), 0.0);
+        let mut lost = Unit::new(&scene("")).component;
+        let told = (0..50).find_map(|_| lost.do_step(lost.time(), 0.01).err());
+        let told = told.map(|error| error.to_string()).unwrap_or_default();
+        assert!(
+            told.contains("left the domain") && told.contains("outside = true"),
+            "{told}"
+        );
+    }
+}
