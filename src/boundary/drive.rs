@@ -56,7 +56,12 @@ impl Drive {
             Steers::Way => ((wanted - from.way) / dt).clamp(-1.0, 1.0),
         };
         let (least, most) = self.stops;
-        let way = from.way + rate * dt;
+        // What speeds up has the mean of both rates.
+        let mean = match self.steers == Steers::Rate && self.quickness.is_finite() {
+            true => 0.5 * (from.rate + rate),
+            false => rate,
+        };
+        let way = from.way + mean * dt;
         let held = way.clamp(least, most);
         let rate = if held == way {
             rate

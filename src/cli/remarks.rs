@@ -3,7 +3,7 @@
 mod slips;
 
 use crate::boundary::ROWS;
-use crate::scene::{Dimension, Scene, WallGeometry};
+use crate::scene::{Dimension, Scene, Wall, WallGeometry};
 
 /// Share of a body's mass that its particles may miss or add without a word [1].
 const MASS_TOLERANCE: f64 = 0.01;
@@ -12,7 +12,7 @@ const MASS_TOLERANCE: f64 = 0.01;
 pub(super) fn remarks(scene: &Scene) -> Vec<String> {
     let all = gates(scene).into_iter().chain(gaps(scene));
     let all = all.chain(overlaps(scene)).chain(beyond(scene));
-    let all = all.chain(meetings(scene));
+    let all = all.chain(meetings(scene)).chain(open_corners(scene));
     let all = all.chain(bodies(scene));
     let all = all.chain(thin_walls(scene));
     all.chain(slips::slips(scene)).collect()
@@ -157,6 +157,35 @@ fn meetings(scene: &Scene) -> Vec<String> {
         .collect()
 }
 
+/// Walls that move as a whole from where another wall ends: the corner between them opens, and has no points behind it.
+fn open_corners(scene: &Scene) -> Vec<String> {
+    let ends = |wall: &Wall| match &wall.geometry {
+        WallGeometry::Polyline {
+            points,
+            closed: false,
+        } => vec![points[0], points[points.len() - 1]],
+        _ => Vec::new(),
+    };
+    let near = 0.5 * scene.numerics.spacing;
+    let meet = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < near;
+    let moving = scene.walls.iter().filter(|wall| wall.rigid);
+    let told = moving.flat_map(|wall| {
+        let others = scene.walls.iter().filter(move |other| !other.moves_with(wall));
+        let beside = others.filter(move |other| {
+            let others = ends(other);
+            ends(wall).iter().any(|a| others.iter().any(|b| meet(a, b)))
+        });
+        beside.map(|other| {
+            format!(
+                "note: wall {} ends where wall {} begins, which moves: nothing is behind that corner, and what is in it may get out. Let it go\n  \
+                 on past {} by four spacings or more, as a cylinder does past its piston.",
+                other.name, wall.name, wall.name
+            )
+        })
+    });
+    told.collect()
+}
+
 fn length(metres: f64) -> String {
     format!("{} m", rounded(metres, 6))
 }
@@ -288,6 +317,29 @@ mod tests {
         };
         let part = "gate sluice: between from and wall bed 0.02 m stay open";
         assert!(note.contains(part), "{note}");
+    }
+
+    #[test]
+    fn corners_that_open_are_told() {
+        let told = |side: &str| {
+            let text = format!(
+                "name = \"b\"\n[domain]\nlower = [-0.2, -0.2]\nupper = [1, 1]\n[numerics]\nspacing = 0.01\n\
+                 [materials.water]\nlaw = \"fluid\"\npreset = \"water\"\n\
+                 [bodies.b]\nmaterial = \"water\"\nbox = {{ lower = [0, 0], upper = [0.1, 0.1] }}\n\
+                 [walls.left]\npolyline = [[0, 0.3], {side}]\n[walls.right]\npolyline = [[0.1, -0.1], [0.1, 0.3]]\n\
+                 [walls.floor]\npolyline = [[0, 0], [0.1, 0]]\nmotion = \"rigid\"\nvelocity = [0, 0.01]\n\
+                 [run]\nstep = 0.01\nuntil = 1\n"
+            );
+            remarks(&crate::scene::parse("b", &text).unwrap_or_else(|e| panic!("{e}")))
+        };
+        let [note] = &told("[0, 0]")[..] else {
+            panic!("{:?}", told("[0, 0]"));
+        };
+        assert!(
+            note.contains("wall left ends where wall floor begins"),
+            "{note}"
+        );
+        assert_eq!(told("[0, -0.1]"), Vec::<String>::new());
     }
 
     #[test]

@@ -128,6 +128,8 @@ pub(crate) struct DriveReading {
     pub(crate) speed: f64,
     /// How far it is from where it is drawn, likewise [m or rad].
     pub(crate) position: f64,
+    /// Whether that is its input.
+    pub(crate) is_told_place: bool,
 }
 
 /// An inflow after the last advance.

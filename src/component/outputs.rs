@@ -11,17 +11,19 @@ pub(super) struct Moment<'a> {
     readings: Vec<Reading>,
     ledger: MassLedger,
     statistics: Statistics,
-    /// Mass of inflows and outflows when the step began [kg].
+    /// Mass of inflows and outflows, and places of walls, when the step began.
     before: &'a FlowMass,
     /// Length of the last step [s], 0 before the first.
     step: f64,
 }
 
-/// Mass that went through each device since the start [kg].
+/// What devices have come to: mass that went through each since the start [kg], and where walls are.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FlowMass {
     inflows: Vec<f64>,
     outflows: Vec<f64>,
+    /// Where steered walls are [m or rad].
+    positions: Vec<f64>,
 }
 
 impl FlowMass {
@@ -30,6 +32,7 @@ impl FlowMass {
         Self {
             inflows: devices.inflows.iter().map(|i| i.mass).collect(),
             outflows: devices.outflow_mass.clone(),
+            positions: devices.drives.iter().map(|d| d.position).collect(),
         }
     }
 }
@@ -111,7 +114,15 @@ impl Moment<'_> {
             Source::OutflowRate(i) => {
                 self.over_step(self.devices.outflow_mass[i] - self.before.outflows[i])
             }
-            Source::WallActualSpeed(i) => self.devices.drives[i].speed,
+            Source::WallActualSpeed(i) => {
+                let drive = &self.devices.drives[i];
+                // It stands as soon as it is there, however far it went in the step.
+                if drive.is_told_place {
+                    self.over_step(drive.position - self.before.positions[i])
+                } else {
+                    drive.speed
+                }
+            }
             Source::WallActualPosition(i) => self.devices.drives[i].position,
             Source::Reading { gauge, first } => self.readings[gauge].values[first + k],
             Source::Validity(gauge) => f64::from(self.readings[gauge].validity.code()),
@@ -134,9 +145,10 @@ impl Moment<'_> {
         }
     }
 
-    fn over_step(&self, mass: f64) -> f64 {
+    /// Change in a second of what changed by so much in the step.
+    fn over_step(&self, change: f64) -> f64 {
         if self.step > 0.0 {
-            mass / self.step
+            change / self.step
         } else {
             0.0
         }

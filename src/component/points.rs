@@ -5,7 +5,8 @@
 //! on the wire.
 
 use super::{Component, ValueReference};
-use crate::scene::Schedule;
+use crate::boundary::Steers;
+use crate::scene::{InputTarget, Interpolation, Schedule};
 
 /// Share of a step within which two times count as the same point.
 const SLACK: f64 = 1e-9;
@@ -73,6 +74,28 @@ impl Component {
             (reference, schedule.value_at(time))
         };
         self.scene().schedules.iter().map(value).unzip()
+    }
+
+    /// Slopes of scheduled positions of walls from `time` to the next point [s], for one [`Component::set_input_derivatives`]: along a straight
+    /// line they move steadily; held over steps they would go to each point at full speed and wait there.
+    #[must_use]
+    pub fn scheduled_slopes(&self, time: f64, next: f64) -> (Vec<ValueReference>, Vec<f64>) {
+        let scene = self.scene();
+        let is_position = |schedule: &&Schedule| match schedule.input {
+            InputTarget::WallDrive(n) => {
+                let mut drives = scene.drives();
+                drives.nth(n).is_some_and(|(_, d)| d.steers == Steers::Way)
+            }
+            _ => false,
+        };
+        let schedules = scene.schedules.iter();
+        let linear = schedules.filter(|s| s.interpolation == Interpolation::Linear);
+        let slope = |schedule: &Schedule| {
+            let change = schedule.value_at(next) - schedule.value_at(time);
+            let reference = self.variables().input(schedule.input);
+            (reference, change / (next - time))
+        };
+        linear.filter(is_position).map(slope).unzip()
     }
 }
 

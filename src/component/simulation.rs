@@ -11,6 +11,7 @@ use super::engine::{
 use super::sampling::Sampler;
 use super::saved::Saved;
 use super::{Error, MassLedger, ParticleView, Statistics, Totals, figures};
+use crate::boundary::Steers;
 use crate::gauge::Reading;
 use crate::math::{Geometry, Vector};
 use crate::scene::{self, Dimension, Scene, WallDrive};
@@ -116,7 +117,8 @@ impl<const D: usize> Simulation<D> {
                 .zip(&self.drives)
                 .map(|(at, drive)| DriveReading {
                     speed: at.rate * drive.full,
-                    position: (at.way * drive.full).min(drive.travel),
+                    position: (at.way * drive.full).clamp(drive.stops.0, drive.stops.1),
+                    is_told_place: drive.steers == Steers::Way,
                 })
                 .collect(),
             outflow_mass: state.drained.clone(),
@@ -141,10 +143,11 @@ impl<const D: usize> Simulation<D> {
             .map(|(r, most)| r.at(elapsed).clamp(0.0, *most))
             .collect();
         let drives = inputs.wall_drive.iter().zip(&self.drives);
-        let drives: Vec<f64> = drives
+        let drives: Vec<(f64, f64)> = drives
             .map(|(r, drive)| {
                 let (least, most) = drive.range();
-                r.at(elapsed).clamp(least, most) / drive.full
+                let told = r.at(elapsed).clamp(least, most);
+                (told / drive.full, r.slope / drive.full)
             })
             .collect();
         let Self {

@@ -8,6 +8,7 @@ use super::access::bad;
 use super::lifecycle::{self, Call};
 use super::variables::{Causality, Source, ValueKind, Variability, Variable};
 use super::{Component, Error, ValueReference};
+use crate::boundary::Steers;
 use crate::scene::GaugeKind;
 
 /// Outputs at two points in time, and what lies before them.
@@ -107,6 +108,10 @@ impl Component {
     fn is_mean(&self, source: Source) -> bool {
         match source {
             Source::InflowActualRate(_) | Source::OutflowRate(_) => true,
+            Source::WallActualSpeed(i) => {
+                let mut drives = self.scene.drives();
+                drives.nth(i).is_some_and(|(_, d)| d.steers == Steers::Way)
+            }
             Source::Reading { gauge, first } => match self.scene.gauges[gauge].kind {
                 GaugeKind::Discharge { .. } => first == 0,
                 GaugeKind::Force { .. } => true,

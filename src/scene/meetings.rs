@@ -104,8 +104,8 @@ impl Scene {
             let turn = std::f64::consts::TAU / motion.rate.abs();
             let until = match &wall.drive {
                 // Nobody knows how far one without an end stop will go.
-                Some(drive) if drive.travel.is_infinite() => return None,
-                Some(drive) => drive.travel / drive.full,
+                Some(drive) if drive.stops.1.is_infinite() => return None,
+                Some(drive) => drive.stops.1 / drive.full,
                 None => self.run.until,
             };
             let until = if only_turns { turn.min(until) } else { until };

@@ -48,13 +48,13 @@ pub(super) fn course(at: &DriveState) -> Course {
 
 impl<const D: usize> Solver<D> {
     /// Moves the walls that move as a whole, and those that are steered, to the end of a step.
-    pub(super) fn move_walls(&mut self, state: &mut State<D>, wanted: &[f64], dt: f64) {
+    pub(super) fn move_walls(&mut self, state: &mut State<D>, wanted: &[(f64, f64)], dt: f64) {
         let drives = self.drives.iter().zip(&mut state.drives);
-        for ((drive, at), wanted) in drives.zip(wanted) {
+        for ((drive, at), (told, slope)) in drives.zip(wanted) {
             Course {
                 way: at.way,
                 rate: at.rate,
-            } = drive.advance(course(at), *wanted, dt);
+            } = drive.advance(course(at), told + slope * dt, dt);
         }
         if !self.movers.is_empty() {
             state.pose.now += dt;

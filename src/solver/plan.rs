@@ -82,8 +82,8 @@ pub struct StepInputs<'a> {
     pub openings: &'a [f64],
     /// Rate of each inflow [kg/s].
     pub rates: &'a [f64],
-    /// What each steered wall is told: its rate, or its way [s].
-    pub drives: &'a [f64],
+    /// What each steered wall is told at the start of the step: its rate, or its way [s]; and what that changes by in a second.
+    pub drives: &'a [(f64, f64)],
 }
 
 /// Sees each move of an internal step: positions before it [m], and the particles after it.

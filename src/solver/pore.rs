@@ -241,6 +241,8 @@ impl<const D: usize> Solver<D> {
             known: volume * known.sum(),
             open: beside_fluid.sum() > 0.0,
         };
+        // A grain alone has no bed, and air around it.
+        sums.open |= sums.diagonal <= 0.0;
         if sums.diagonal > 0.0 && sums.diagonal < SURFACE * volume * self.lattice_sum && dry() {
             self.join_air(state, rho_w, &mut sums, (block, row, i));
         }

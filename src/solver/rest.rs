@@ -213,7 +213,7 @@ impl<const D: usize> Solver<D> {
                 .iter()
                 .zip(&state.drives)
                 .zip(inputs.drives)
-                .all(|((drive, at), wanted)| drive.rests(course(at), *wanted))
+                .all(|((drive, at), wanted)| drive.rests(course(at), wanted.0))
     }
 }
 

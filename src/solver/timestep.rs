@@ -55,10 +55,11 @@ impl<const D: usize> Solver<D> {
     }
 
     /// Steered walls that move as a whole likewise, while they are to move otherwise than they do: neighbours know of it a step later.
-    fn drive_bound(&self, state: &State<D>, wanted: &[f64]) -> f64 {
+    fn drive_bound(&self, state: &State<D>, wanted: &[(f64, f64)]) -> f64 {
         let drives = self.drives.iter().zip(&state.drives).zip(wanted);
-        let changing =
-            drives.filter(|((drive, at), wanted)| !drive.is_settled(course(at), **wanted));
+        let changing = drives.filter(|((drive, at), (told, slope))| {
+            *slope != 0.0 || !drive.is_settled(course(at), *told)
+        });
         let fastest = changing.fold(0.0, |v, ((drive, _), _)| f64::max(v, drive.speed));
         self.device_bound(fastest)
     }

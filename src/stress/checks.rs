@@ -95,7 +95,7 @@ impl Check {
         (
             Check::Sleep,
             "sleep",
-            "a scene that sleeps wakes in the very step in which a gate or an inflow is told something",
+            "a scene that sleeps wakes in the very step in which a gate, an inflow or a wall is told something",
         ),
         (
             Check::Gate,

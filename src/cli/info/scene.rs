@@ -5,7 +5,9 @@ use crate::cli::run::short;
 use crate::component::{Component, StaysAwake};
 use crate::material::{Grains, Law, Material, MuI};
 use crate::math::norm;
-use crate::scene::{Dimension, ForceTarget, GaugeKind, OutflowPlace, Scene, Slip, WallGeometry};
+use crate::scene::{
+    Dimension, ForceTarget, GaugeKind, OutflowPlace, Scene, Slip, Wall, WallGeometry,
+};
 use crate::solver::Scheme;
 
 /// Particles, walls, devices, gauges and what is not used.
@@ -207,9 +209,10 @@ fn parts(scene: &Scene, component: &Component) -> Vec<String> {
             WallGeometry::Plane { .. } => "plane".to_owned(),
         };
         lines.push(format!(
-            "wall     {}: {shape}, {}",
+            "wall     {}: {shape}, {}{}",
             wall.name,
-            slip(wall.slip)
+            slip(wall.slip),
+            steering(wall)
         ));
     }
     let plates = scene.numerics.plate_speed();
@@ -255,6 +258,25 @@ fn parts(scene: &Scene, component: &Component) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// How a wall is steered, behind a comma; nothing of others.
+fn steering(wall: &Wall) -> String {
+    let Some(drive) = &wall.drive else {
+        return String::new();
+    };
+    let ((least, most), unit) = (drive.range(), drive.unit());
+    let ramp = match drive.ramp > 0.0 {
+        true => format!(", to full speed in {} s", short(drive.ramp)),
+        false => String::new(),
+    };
+    format!(
+        ", steered by wall.{}.{} from {} to {} {unit}{ramp}",
+        wall.name,
+        drive.input(),
+        short(least),
+        short(most)
+    )
 }
 
 fn slip(slip: Slip) -> String {

@@ -109,20 +109,20 @@ fn frictions(scene: &Scene) -> Vec<String> {
     told.collect()
 }
 
-/// The name of an input, what it starts at in the scene and the key that says so.
+/// The name of an input, what it starts at in the scene and the key that says so, if a schedule sets that aside: a wall's speed at the start is
+/// what it has, whatever it is told then.
 fn input(scene: &Scene, target: InputTarget) -> (String, f64, &'static str) {
     match target {
+        InputTarget::WallDrive(k) => {
+            let mut names = scene
+                .drives()
+                .map(|(w, d)| format!("wall.{}.{}", w.name, d.input()));
+            (names.nth(k).unwrap_or_default(), 0.0, "start")
+        }
         InputTarget::GateOpening(k) => {
             let gate = &scene.gates[k];
             (format!("gate.{}.opening", gate.name), gate.start, "start")
         }
-        InputTarget::WallDrive(k) => scene.drives().nth(k).map_or_else(
-            || (String::new(), 0.0, ""),
-            |(wall, drive)| {
-                let name = format!("wall.{}.{}", wall.name, drive.input());
-                (name, drive.start_value(), "its start")
-            },
-        ),
         InputTarget::InflowRate(k) => {
             let inflow = &scene.inflows[k];
             (format!("inflow.{}.rate", inflow.name), inflow.rate, "rate")

@@ -88,6 +88,18 @@ impl RunLog {
         }
     }
 
+    /// Inputs were given slopes and accepted.
+    pub(super) fn slopes(
+        &mut self,
+        component: &Component,
+        references: &[ValueReference],
+        slopes: &[f64],
+    ) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.record_slopes(component, references, slopes, SOURCE);
+        }
+    }
+
     /// A step was done from `t` over `h` [s]. A warning that the log goes no further comes back once.
     ///
     /// # Errors

@@ -202,6 +202,11 @@ impl Session {
         let (references, values) = self.component.scheduled(time);
         self.component.set(&references, &values)?;
         self.log.inputs(&self.component, &references, &values);
+        let (references, slopes) = self.component.scheduled_slopes(time, next);
+        if !references.is_empty() {
+            self.component.set_input_derivatives(&references, &slopes)?;
+            self.log.slopes(&self.component, &references, &slopes);
+        }
         let progress = &mut self.progress;
         let report = self
             .component

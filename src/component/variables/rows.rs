@@ -259,7 +259,7 @@ fn inflow_rows(i: usize, inflow: &Inflow) -> impl Iterator<Item = Row> {
             "",
             Source::InflowBlocked(i),
             format!(
-                "whether material before inflow {name} kept it from letting in what was wanted in the last step"
+                "whether inflow {name} could not let in what was wanted in the last step, for material before it or a stream faster than its steps"
             ),
         )
         .kind(ValueKind::Boolean),
@@ -329,7 +329,10 @@ fn drive_rows(
             format!("wall.{name}.actual_speed"),
             speed.0,
             Source::WallActualSpeed(i),
-            format!("speed that wall {name} has {sense}"),
+            match drive.steers {
+                Steers::Rate => format!("speed that wall {name} has {sense}"),
+                Steers::Way => format!("mean speed of wall {name} {sense} over the last step"),
+            },
         )
         .display(speed.1),
     ];

@@ -4,6 +4,7 @@ use super::{GATE, INFLOW, OUTFLOW, Svg, WALL};
 use crate::scene::{
     Dimension, Gate, Inflow, Outflow, OutflowPlace, Point, Scene, Wall, WallGeometry,
 };
+use crate::units::shown_bound;
 
 pub(super) fn draw(svg: &mut Svg<'_>, scene: &Scene) {
     for outflow in &scene.outflows {
@@ -60,9 +61,10 @@ fn draw_wall(svg: &mut Svg<'_>, wall: &Wall, dimension: Dimension) {
         None => format!("wall {name}"),
         Some(drive) => {
             let (least, most) = drive.range();
+            let (least, most) = (shown_bound(least), shown_bound(most));
             let unit = drive.unit();
             let input = drive.input();
-            format!("wall {name}: input wall.{name}.{input}, {least:.3} to {most:.3} {unit}")
+            format!("wall {name}: input wall.{name}.{input}, {least} to {most} {unit}")
         }
     };
     let stroke = format!("fill=\"none\" stroke=\"{WALL}\" stroke-width=\"2.5\"");

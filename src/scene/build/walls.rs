@@ -266,10 +266,7 @@ pub(super) fn drives<const D: usize>(scene: &Scene, movers: &[Mover<D>]) -> Vec<
     drives
         .map(|(n, (_, drive))| Drive {
             steers: drive.steers,
-            stops: match drive.travel.is_finite() {
-                true => (0.0, drive.travel / drive.full),
-                false => (f64::NEG_INFINITY, f64::INFINITY),
-            },
+            stops: (drive.stops.0 / drive.full, drive.stops.1 / drive.full),
             quickness: drive.ramp.recip(),
             speed: {
                 let mover = movers.iter().find(|m| m.drive == Some(n));

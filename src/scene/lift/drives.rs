@@ -4,14 +4,32 @@ use super::Lift;
 use super::motion::Motion;
 use crate::boundary::Steers;
 use crate::math::length;
-use crate::scene::raw::{DriveWord, Place, RawWall};
+use crate::scene::raw::{At, DriveWord, Place, RawWall, Scalar};
 use crate::scene::types::WallDrive;
 
 /// Where start and ramp may stand.
 const OF_SPEED: &str = "start and ramp only beside input = \"speed\"";
 
+/// Where end stops may stand.
+const OF_STROKE: &str =
+    "stroke, and stroke_back beside it, only with input, of a rigid wall with velocity";
+const OF_SWING: &str =
+    "swing, and swing_back beside it, only with input, of a rigid wall that only turns";
+
+/// The SI value of what is given.
+fn value<T: Scalar>(at: &Option<At<T>>) -> Option<f64> {
+    at.as_ref().map(|at| at.value.si())
+}
+
 /// Keys that say more of an input.
-const KEYS: [&str; 4] = ["start", "ramp", "stroke", "swing"];
+const KEYS: [&str; 6] = [
+    "start",
+    "ramp",
+    "stroke",
+    "stroke_back",
+    "swing",
+    "swing_back",
+];
 
 impl Lift<'_> {
     /// How a wall that moves like this is steered; `Some(None)` if it is not.
@@ -49,39 +67,58 @@ impl Lift<'_> {
             DriveWord::Speed => Steers::Rate,
             DriveWord::Position => Steers::Way,
         };
-        let (stop, other) = if turns {
-            ("swing", "stroke")
+        let (stops, others) = if turns {
+            (["swing", "swing_back"], ["stroke", "stroke_back"])
         } else {
-            ("stroke", "swing")
+            (["stroke", "stroke_back"], ["swing", "swing_back"])
         };
+        let [stop, back] = stops;
         let of_what = if turns {
             "only turns"
         } else {
             "has a velocity"
         };
-        let mut is_right = self.refuse_keys(raw, &[other], &format!("of a wall that {of_what}"));
+        let mut is_right = self.refuse_keys(raw, &others, &format!("of a wall that {of_what}"));
         if !motion.rigid {
-            is_right &= self.refuse_keys(raw, &[stop], "of a belt, which stays where it is");
+            is_right &= self.refuse_keys(raw, &stops, "of a belt, which stays where it is");
         }
         if steers == Steers::Way {
             is_right &= self.refuse_keys(raw, &["start", "ramp"], "beside input = \"position\"");
             is_right &= self.has_position(&input.place, raw, motion.rigid, stop);
         }
-        is_right.then(|| {
-            let ratio = |at: Option<f64>, left_out: f64| at.unwrap_or(left_out);
-            let travel = match turns {
-                true => raw.swing.as_ref().map(|at| at.value.0),
-                false => raw.stroke.as_ref().map(|at| at.value.0),
-            };
-            Some(WallDrive {
-                steers,
-                turns,
-                full,
-                start: ratio(raw.start.as_ref().map(|at| at.value.0), 0.0),
-                ramp: ratio(raw.ramp.as_ref().map(|at| at.value.0), 0.0),
-                travel: ratio(travel, f64::INFINITY),
-            })
-        })
+        if let Some(start) = raw.start.as_ref().filter(|at| at.value.0 < 0.0)
+            && raw.given.contains(&stop)
+            && !raw.given.contains(&back)
+        {
+            self.problems.report(
+                &start.place,
+                format!("a start of {} at an end stop", start.value.0),
+                format!("0 to 1 beside {stop}: where it is drawn it can go forwards only"),
+                "turn velocity or angular_velocity round and draw the wall at its other end, or delete start",
+            );
+            is_right = false;
+        }
+        if !raw.given.contains(&stop) {
+            is_right &= self.refuse_keys(raw, &[back], &format!("without {stop}"));
+        }
+        if !is_right {
+            return None;
+        }
+        let (forth, back) = match turns {
+            true => (value(&raw.swing), value(&raw.swing_back)),
+            false => (value(&raw.stroke), value(&raw.stroke_back)),
+        };
+        Some(Some(WallDrive {
+            steers,
+            turns,
+            full,
+            start: value(&raw.start).unwrap_or(0.0),
+            ramp: value(&raw.ramp).unwrap_or(0.0),
+            stops: match forth {
+                Some(forth) => (-back.unwrap_or(0.0), forth),
+                None => (f64::NEG_INFINITY, f64::INFINITY),
+            },
+        }))
     }
 
     /// Keys that say nothing here; whether there is none.
@@ -91,14 +128,10 @@ impl Lift<'_> {
             let (place, allowed) = match *key {
                 "start" => (raw.start.as_ref().map(|at| &at.place), OF_SPEED),
                 "ramp" => (raw.ramp.as_ref().map(|at| &at.place), OF_SPEED),
-                "stroke" => (
-                    raw.stroke.as_ref().map(|at| &at.place),
-                    "stroke only beside input, of a rigid wall with velocity",
-                ),
-                _ => (
-                    raw.swing.as_ref().map(|at| &at.place),
-                    "swing only beside input, of a rigid wall that only turns",
-                ),
+                "stroke" => (raw.stroke.as_ref().map(|at| &at.place), OF_STROKE),
+                "stroke_back" => (raw.stroke_back.as_ref().map(|at| &at.place), OF_STROKE),
+                "swing" => (raw.swing.as_ref().map(|at| &at.place), OF_SWING),
+                _ => (raw.swing_back.as_ref().map(|at| &at.place), OF_SWING),
             };
             if let Some(place) = place {
                 let found = format!("{key} {found}");

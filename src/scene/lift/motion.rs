@@ -270,6 +270,7 @@ impl Lift<'_> {
                 "a velocity along the wall's surface (a belt): straight polylines and planes only",
                 "turn it along the wall; for a wall that moves as a whole set motion = \"rigid\"",
             );
+            return velocity;
         }
         let normal = surface_normal(geometry);
         let across = dot(&velocity, &normal);

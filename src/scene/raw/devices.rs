@@ -41,16 +41,20 @@ table! {
         optional centre: Coordinates<Length>;
         /// In space: axis of rotation, of any length.
         optional axis: Coordinates<Ratio>;
-        /// Makes its motion an input, and velocity (or angular_velocity) the fastest it goes: positive inputs go their way.
+        /// Makes its motion an input, and velocity (or angular_velocity) the fastest it goes: positive inputs go their way. Of a wall with both, it is the way along velocity, and it turns in proportion.
         optional input: DriveWord;
         /// With input = "speed": speed at the start, over that of velocity or angular_velocity; 0 if left out: it stands until it is told to move.
         optional start: Ratio, in Range::within(-1.0, 1.0);
         /// With input = "speed": time in which it comes from a standstill to its full speed, or back; 0 s if left out: at once.
         optional ramp: Time, in Range::from(0.0);
-        /// With input, of a rigid wall with velocity: how far it goes along it, from where it is drawn to an end stop; left out: as far as its speed takes it, also backwards.
+        /// With input, of a rigid wall with velocity: how far it goes along it, from where it is drawn, which is one end stop, to the other; left out with input = "speed": as far as its speed takes it, also backwards.
         optional stroke: Length, in Range::above(0.0);
-        /// With input, of a rigid wall that only turns: how far, from where it is drawn to an end stop; left out: any number of turns.
+        /// Beside stroke: how far it goes backwards from where it is drawn, which is then no end stop.
+        optional stroke_back: Length, in Range::above(0.0);
+        /// With input, of a rigid wall that only turns: how far, from where it is drawn, which is one end stop, to the other; left out with input = "speed": any number of turns, both ways.
         optional swing: Angle, in Range::above(0.0);
+        /// Beside swing: how far it turns backwards from where it is drawn, which is then no end stop.
+        optional swing_back: Angle, in Range::above(0.0);
     }
 }
 
@@ -59,7 +63,7 @@ choice! {
     DriveWord {
         /// its speed, wall.NAME.speed, from minus to plus the full one: a conveyor's or a drum's motor
         "speed" => Speed,
-        /// where it is, wall.NAME.position (of one that only turns wall.NAME.angle), which it goes to at full speed: a piston, a flap
+        /// where it is, wall.NAME.position (of one that only turns wall.NAME.angle), which it goes to at full speed, or steadily where the input has a slope (in `sandgate run`: a linear schedule): a piston, a flap. Give velocity as the speed it should have
         "position" => Position,
     }
 }
@@ -69,7 +73,7 @@ choice! {
     MotionWord {
         /// its surface slides along itself and the wall stays where it is: a conveyor belt
         "belt" => Belt,
-        /// the wall moves as a whole: a piston, a falling floor, a drum
+        /// the wall moves as a whole: a piston, a falling floor, a drum. Walls that it slides along go on past it by four spacings, or what is in the corner gets out
         "rigid" => Rigid,
     }
 }

@@ -35,7 +35,7 @@ pub(super) use sections::*;
 pub(super) use shapes::*;
 pub(super) use unknown::nearest;
 pub(super) use values::{
-    Angle, AngularSpeed, Density, Length, Pressure, Ratio, Speed, Text, Viscosity,
+    Angle, AngularSpeed, Density, Length, Pressure, Ratio, Scalar, Speed, Text, Viscosity,
 };
 
 use declare::{choice, table, tagged};

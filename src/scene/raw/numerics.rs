@@ -61,7 +61,7 @@ table! {
         optional solver_tolerance: Ratio, in Range::within(1e-14, 0.1), default 3e-4;
         /// Most iterations of a viscous solve.
         optional solver_max_iterations: Whole, in Range::within(1.0, 1e6), default 5000;
-        /// Whether a scene in which nothing moves is not computed until an input changes. Heights and fronts differ by less than 1e-4 of the height of the material, forces on walls by less than 1 %. Scenes without walls, with walls that move, or with a material that may creep on (a power law, a viscosity above 1e-4 rho sqrt(g H^3), Barker and Gray's law) never sleep.
+        /// Whether a scene in which nothing moves is not computed until an input changes. Heights and fronts differ by less than 1e-4 of the height of the material, forces on walls by less than 1 %. Scenes without walls, with walls that move unsteered, or with a material that may creep on (a power law, a viscosity above 1e-4 rho sqrt(g H^3), Barker and Gray's law) never sleep.
         optional sleep: Flag, default true;
         /// Scheme implicit: internal steps from one solve of the pore pressure of saturated beds to the next; 1 solves it in every step. 4 changes depths as another seed does (0.3 to 1.2 % rms over 2 s of the reduced silted dam), 16 by 5 %.
         optional seepage_interval: Whole, in Range::within(1.0, 1000.0), default 4;

@@ -71,8 +71,8 @@ pub struct WallDrive {
     pub start: f64,
     /// Time from a standstill to full speed [s].
     pub ramp: f64,
-    /// Way to the end stop, infinity if there is none [m, of turning rad].
-    pub travel: f64,
+    /// End stops, from where it is drawn; infinite where there are none [m, of turning rad].
+    pub stops: (f64, f64),
 }
 
 impl WallDrive {
@@ -91,7 +91,7 @@ impl WallDrive {
     pub fn range(&self) -> (f64, f64) {
         match self.steers {
             Steers::Rate => (-self.full, self.full),
-            Steers::Way => (0.0, self.travel),
+            Steers::Way => self.stops,
         }
     }
 

@@ -46,13 +46,13 @@ impl<const D: usize> Solver<D> {
         while next < list.len() {
             let i = list[next];
             next += 1;
-            for &j in self.lists.blocks[i / CHUNK].row(i % CHUNK) {
+            self.lists.blocks[i / CHUNK].for_each_pair(i % CHUNK, |j, _, _| {
                 let j = j as usize;
                 if !reached[j] {
                     reached[j] = true;
                     list.push(j);
                 }
-            }
+            });
         }
     }
 }

@@ -116,13 +116,17 @@ fn a_belt_ramps_up_wakes_what_sleeps_and_goes_on_from_a_saved_state() {
 
 #[test]
 fn a_piston_goes_where_it_is_told_and_no_further_than_its_end_stop() {
-    let piston = "motion = \"rigid\"\nvelocity = [-0.5, 0]\ninput = \"position\"\nstroke = 0.04";
+    let piston = "motion = \"rigid\"\nvelocity = [-0.5, 0]\ninput = \"position\"\nstroke = 0.04\nstroke_back = 0.01";
     let force = "[gauges.push]\nkind = \"force\"\non = \"wall.side\"\n[gauges.at]\nkind = \"depth\"\nfoot = [0.28, 0]";
     let mut unit = Unit::new(&sand_box("", piston, force));
     unit.set("wall.side.position", 0.03);
     unit.step();
     let way = unit.get("wall.side.actual_position");
     assert!((way - 0.005).abs() < 1e-12, "{way}");
+    assert!((unit.get("wall.side.actual_speed") - 0.5).abs() < 1e-9);
+    unit.run_to(0.05);
+    unit.step();
+    // The mean of the step in which it arrived.
     assert!((unit.get("wall.side.actual_speed") - 0.5).abs() < 1e-9);
     unit.run_to(0.1);
     let way = unit.get("wall.side.actual_position");
@@ -138,7 +142,7 @@ fn a_piston_goes_where_it_is_told_and_no_further_than_its_end_stop() {
     assert_eq!(unit.get("gauge.at.validity"), 3.0, "behind the piston");
     let reference = unit.reference("wall.side.position");
     let refused = unit.component.set(&[reference], &[0.05]).unwrap_err();
-    assert!(refused.to_string().contains("0 to 0.04 m"), "{refused}");
+    assert!(refused.to_string().contains("-0.01 to 0.04 m"), "{refused}");
     unit.set("wall.side.position", 0.0);
     unit.run_to(0.2);
     assert_eq!(unit.get("wall.side.actual_position"), 0.0);
@@ -214,20 +218,73 @@ until = "3 s"
     }
 }
 
+/// Steps along the scene's schedules as `sandgate run` does, until `end` [s].
+fn run_scheduled(component: &mut Component, end: f64, mut look: impl FnMut(&Component)) {
+    let step = component.scene().run.step;
+    while component.time() < end - 0.5 * step {
+        let time = component.time();
+        let (references, values) = component.scheduled(time);
+        component.set(&references, &values).unwrap();
+        let (references, slopes) = component.scheduled_slopes(time, time + step);
+        if !references.is_empty() {
+            component
+                .set_input_derivatives(&references, &slopes)
+                .unwrap();
+        }
+        component.do_step(time, step).unwrap();
+        look(component);
+    }
+}
+
 #[test]
-fn a_schedule_turns_a_drum() {
+fn a_schedule_turns_a_paddle() {
     let mill = "motion = \"rigid\"\nangular_velocity = \"-30 rpm\"\ncentre = [0.3, 0.29]\ninput = \"speed\"";
-    let schedule =
-        "[[schedule]]\ninput = \"wall.side.speed\"\npoints = [[0, 0], [0.5, \"15 rpm\"]]";
-    let scene = sand_box("", mill, schedule);
-    assert!((scene.schedules[0].points[1].1 - 0.5 * PI).abs() < 1e-12);
-    let mut unit = Unit::new(&scene);
-    unit.set("wall.side.speed", 0.5 * PI);
-    unit.run_to(0.1);
+    let schedule = "[[schedule]]\ninput = \"wall.side.speed\"\npoints = [[0, \"15 rpm\"], [0.1, \"15 rpm\"], [0.11, 0]]";
+    let mut unit = Unit::new(&sand_box("", mill, schedule));
+    run_scheduled(&mut unit.component, 0.2, |_| {});
+    // 15 rpm over 0.11 s: inputs of runs are held over steps.
     let turned = unit.get("wall.side.actual_angle");
-    assert!((turned - 0.05 * PI).abs() < 1e-9, "{turned}");
-    // In the sense of its angular velocity, which is clockwise: the lower end goes to the left.
-    let lowest = unit.component.wall_points();
-    let left = lowest.iter().filter(|x| x[1] > 0.005).map(|x| x[0]);
-    assert!(left.fold(f64::INFINITY, f64::min) < 0.27);
+    assert!((turned - 0.055 * PI).abs() < 1e-9, "{turned}");
+    assert_eq!(unit.get("wall.side.actual_speed"), 0.0);
+    // In the sense of its angular velocity, which is clockwise: its lower end goes to the left, by 0.28 sin(9.9 deg).
+    let points = unit.component.wall_points();
+    let paddle = points
+        .iter()
+        .filter(|x| x[0] > 0.1 && x[0] < 0.45 && x[1] > 0.005 && x[1] < 0.28);
+    let left = paddle.map(|x| x[0]).fold(f64::INFINITY, f64::min);
+    assert!((left - 0.25).abs() < 0.01, "{left}");
+}
+
+/// A position that is told with a slope is gone to steadily, whatever the steps; held over steps it would be one jerk a step.
+#[test]
+fn a_position_with_a_slope_is_gone_to_steadily() {
+    let piston = "motion = \"rigid\"\nvelocity = [-0.5, 0]\ninput = \"position\"\nstroke = 0.04";
+    let schedule = "[[schedule]]\ninput = \"wall.side.position\"\npoints = [[0, 0], [0.2, 0.01]]";
+    let mut unit = Unit::new(&sand_box("", piston, schedule));
+    let reference = unit.reference("wall.side.actual_speed");
+    let mut speeds = Vec::new();
+    run_scheduled(&mut unit.component, 0.1, |component| {
+        let mut speed = [0.0];
+        component.get(&[reference], &mut speed).unwrap();
+        speeds.push(speed[0]);
+    });
+    assert!(speeds.iter().all(|v| (v - 0.05).abs() < 1e-9), "{speeds:?}");
+    // Steps of other lengths, each with the slope.
+    let (position, at) = (
+        unit.reference("wall.side.position"),
+        unit.reference("wall.side.actual_position"),
+    );
+    for h in [1.1e-3, 0.3e-3, 1.1e-3, 7e-3] {
+        let time = unit.component.time();
+        unit.component.set(&[position], &[0.05 * time]).unwrap();
+        unit.component
+            .set_input_derivatives(&[position], &[0.05])
+            .unwrap();
+        unit.component.do_step(time, h).unwrap();
+        let speed = unit.get("wall.side.actual_speed");
+        assert!((speed - 0.05).abs() < 1e-9, "{speed} at {time} over {h}");
+        let mut way = [0.0];
+        unit.component.get(&[at], &mut way).unwrap();
+        assert!((way[0] - 0.05 * (time + h)).abs() < 1e-12, "{way:?}");
+    }
 }

@@ -244,7 +244,7 @@ fn pores_of_a_closed_bed_have_no_pressure_at_its_top() {
 name = "closed"
 [domain]
 lower = [-0.1, -0.1]
-upper = [0.6, 0.4]
+upper = [0.64, 0.4]
 [numerics]
 spacing = "8 mm"
 [materials.water]
@@ -273,11 +273,21 @@ at = [0.1, 0.02]
 kind = "pressure"
 quantity = "pore"
 at = [0.4, 0.02]
+[bodies.grain]
+material = "silt"
+box = { lower = [0.55, 0.2], upper = [0.558, 0.208] }
+[gauges.grain]
+kind = "pressure"
+quantity = "pore"
+at = [0.554, 0.204]
 [run]
 step = "20 ms"
 until = "0.2 s"
 "#;
     let mut unit = Unit::new(&scene::parse("closed", text).unwrap());
+    // Around one grain alone is air.
+    assert_eq!(unit.get("gauge.grain.validity"), 0.0);
+    assert_eq!(unit.get("gauge.grain.pressure"), 0.0);
     unit.run_to(0.2);
     for gauge in ["closed", "open"] {
         let share = unit.get(&format!("gauge.{gauge}.pressure")) / (1000.0 * 9.81 * 0.18);
