@@ -5,10 +5,20 @@ use super::Draft;
 use super::parts::{Scale, body, drive, force, head, material, numerics, schedule, slip, wall};
 use super::plane::{PARTICLES, STEPS};
 
-/// A third of the walls that move are steered: keys that go to the wall, and what its input is told until `time` [s], up to `full`.
-fn steering(dice: &mut Dice, wall: &str, full: f64, time: f64) -> (String, String) {
+/// A third of the walls that move are steered: keys that go to the wall, and what its input is told until `time` [s]. `full` is its speed; `way`, of
+/// rigid walls, the key of its end stop and the name of its position, by which half of them are steered.
+fn steering(
+    dice: &mut Dice,
+    wall: &str,
+    full: f64,
+    time: f64,
+    way: Option<(&str, &str)>,
+) -> (String, String) {
     if !dice.chance(0.33) {
         return Default::default();
+    }
+    if let Some((stop, place)) = way.filter(|_| dice.chance(0.5)) {
+        return positioning(dice, wall, full.abs() * time, time, (stop, place));
     }
     let mut keys = "input = \"speed\"\n".to_owned();
     if dice.chance(0.5) {
@@ -27,6 +37,35 @@ fn steering(dice: &mut Dice, wall: &str, full: f64, time: f64) -> (String, Strin
         .collect();
     let kind = dice.pick(&["hold", "linear"]);
     (keys, schedule(&format!("wall.{wall}.speed"), &points, kind))
+}
+
+/// A wall that is told where to be, between its end stops.
+fn positioning(
+    dice: &mut Dice,
+    wall: &str,
+    farthest: f64,
+    time: f64,
+    (stop, place): (&str, &str),
+) -> (String, String) {
+    let forth = short(dice.from(0.1, 1.0) * farthest);
+    let mut keys = format!("input = \"position\"\n{stop} = {forth:?}\n");
+    let mut back = 0.0;
+    if dice.chance(0.5) {
+        back = short(dice.from(0.05, 0.5) * farthest);
+        keys += &format!("{stop}_back = {back:?}\n");
+    }
+    let count = dice.whole(1, 6);
+    let points: Vec<[f64; 2]> = (0..count)
+        .map(|k| {
+            let at = short(time * (k as f64 + 0.9 * dice.unit()) / count as f64);
+            [at, dice.pick(&[0.0, forth, -back, short(0.3 * forth)])]
+        })
+        .collect();
+    let kind = dice.pick(&["hold", "linear"]);
+    (
+        keys,
+        schedule(&format!("wall.{wall}.{place}"), &points, kind),
+    )
 }
 
 /// A drum that turns.
@@ -48,7 +87,7 @@ pub(super) fn turning(dice: &mut Dice, scale: &Scale, radius: f64, rate: f64, mo
     scene += &material(dice, "sand");
     let drive = drive(dice, scale.internal_step(), STEPS);
     let time = drive.most_steps as f64 * scale.internal_step();
-    let (steered, told) = steering(dice, "drum", rate, time);
+    let (steered, told) = steering(dice, "drum", rate, time, Some(("swing", "angle")));
     let inner = short(radius * 0.99 - 0.1 * scale.spacing);
     scene += &format!(
         "[bodies.fill]\nmaterial = \"sand\"\ncircle = {{ centre = [0.0, 0.0], radius = {inner:?} }}\n{more}\n"
@@ -96,7 +135,7 @@ pub(super) fn belt(dice: &mut Dice) -> Draft {
     let top = short(2.5 * height + 6.0 * scale.spacing);
     let mut drive = drive(dice, scale.internal_step(), STEPS);
     let time = drive.most_steps as f64 * scale.internal_step();
-    let (steered, told) = steering(dice, "floor", speed, time);
+    let (steered, told) = steering(dice, "floor", speed, time, None);
     let moves = format!("velocity = [{speed:?}, 0.0]\n{steered}");
     let mut scene = box_in_two(dice, width, top, &scale, &moves) + &told;
     let left = short(width * dice.from(0.0, 0.4));
@@ -133,7 +172,7 @@ pub(super) fn piston(dice: &mut Dice) -> Draft {
     // The piston is the right wall of a box whose floor and roof go on behind it.
     let frame = [[far, top], [0.0, top], [0.0, 0.0], [far, 0.0]];
     scene += &wall("frame", &frame, false, &slip(dice));
-    let (steered, told) = steering(dice, "piston", speed, time);
+    let (steered, told) = steering(dice, "piston", speed, time, Some(("stroke", "position")));
     let face = [[width, 0.0], [width, top]];
     let moves = format!(
         "motion = \"rigid\"\nvelocity = [{speed:?}, 0.0]\n{}{steered}",

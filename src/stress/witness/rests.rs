@@ -1,5 +1,6 @@
 //! What sleeps, rests or falls freely, and whether gates do as they are told.
 
+use crate::boundary::Steers;
 use crate::component::{Component, Totals};
 use crate::scene::InputTarget;
 
@@ -23,7 +24,7 @@ impl Witness<'_> {
         let told = wanted.iter().any(|(input, value)| match input {
             InputTarget::GateOpening(i) => (self.before.openings[*i] - value).abs() > 1e-6,
             InputTarget::InflowRate(_) => *value > 0.0,
-            InputTarget::WallDrive(_) => *value != 0.0,
+            InputTarget::WallDrive(n) => self.is_told_to_move(*n, *value),
         });
         let worked = component.steps() > self.steps;
         if told && !worked {
@@ -40,6 +41,19 @@ impl Witness<'_> {
                 "nothing was told and it did not sleep on".to_owned(),
             );
         }
+    }
+
+    /// Whether a steered wall is told to move from where it stands.
+    fn is_told_to_move(&self, drive: usize, told: f64) -> bool {
+        let scene = self.scene;
+        let walls = scene.walls.iter().zip(&self.before.wall_times);
+        let mut steered = walls.filter_map(|(w, time)| Some((w.drive.as_ref()?, time)));
+        steered
+            .nth(drive)
+            .is_some_and(|(drive, time)| match drive.steers {
+                Steers::Rate => told != 0.0,
+                Steers::Way => (time * drive.full - told).abs() > 1e-6 * drive.full,
+            })
     }
 
     pub(super) fn check_gates(
