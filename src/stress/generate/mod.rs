@@ -110,13 +110,23 @@ pub const KINDS: [Kind; 42] = [
         devices::wake,
         "a small silo that falls asleep and is woken by its gate",
     ),
-    kind("drum", 5, moving::drum, "a turning drum"),
-    kind("belt", 4, moving::belt, "a heap on a belt between walls"),
+    kind(
+        "drum",
+        5,
+        moving::drum,
+        "a turning drum, a third of them steered",
+    ),
+    kind(
+        "belt",
+        4,
+        moving::belt,
+        "a heap on a belt between walls, a third of them steered",
+    ),
     kind(
         "piston",
         5,
         moving::piston,
-        "a wall that moves as a whole, towards the heap or away from it",
+        "a wall that moves as a whole, towards the heap or away from it, a third of them steered",
     ),
     kind(
         "free",
