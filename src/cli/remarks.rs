@@ -1,5 +1,6 @@
 //! What is legal in a scene and seldom meant, in words for people: `sandgate info` and `sandgate run` tell it.
 
+mod devices;
 mod slips;
 
 use crate::boundary::ROWS;

@@ -1,7 +1,8 @@
 //! The table of variables: the only list. FMI XML, C names, Zenoh keys, MCAP channels and docs are made from it.
 //!
-//! Here: what a row is. `rows` holds the list itself (gauges' rows are in `gauges`), `document` writes docs/variables.md from it.
+//! Here: what a row is. `rows` holds the list itself (rows of `devices` and `gauges` are in these), `document` writes docs/variables.md from it.
 
+mod devices;
 mod document;
 mod gauges;
 pub(super) mod host;
