@@ -167,6 +167,8 @@ mod tests {
             rates.push(now.rate);
         }
         assert_eq!(rates, [0.25, 0.5, 0.5, 0.5]);
+        // The first two steps at the mean of their rates, 0.125 and 0.375.
+        assert_eq!(now.way, 0.09375);
         assert!(drive.is_settled(now, 0.5) && !drive.rests(now, 0.5));
         for _ in 0..64 {
             now = drive.advance(now, 0.5, 0.0625);

@@ -169,18 +169,17 @@ fn open_corners(scene: &Scene) -> Vec<String> {
     };
     let near = 0.5 * scene.numerics.spacing;
     let meet = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < near;
-    let moving = scene.walls.iter().filter(|wall| wall.rigid);
-    let told = moving.flat_map(|wall| {
-        let others = scene.walls.iter().filter(move |other| !other.moves_with(wall));
-        let beside = others.filter(move |other| {
-            let others = ends(other);
-            ends(wall).iter().any(|a| others.iter().any(|b| meet(a, b)))
-        });
-        beside.map(|other| {
+    let count = scene.walls.len();
+    let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b)));
+    let told = pairs.filter_map(|(a, b)| {
+        let (a, b) = (&scene.walls[a], &scene.walls[b]);
+        let others = ends(b);
+        let is_corner = ends(a).iter().any(|a| others.iter().any(|b| meet(a, b)));
+        (!a.moves_with(b) && is_corner).then(|| {
             format!(
-                "note: wall {} ends where wall {} begins, which moves: nothing is behind that corner, and what is in it may get out. Let it go\n  \
-                 on past {} by four spacings or more, as a cylinder does past its piston.",
-                other.name, wall.name, wall.name
+                "note: walls {} and {} end where the other begins, and one of them moves: nothing is behind that corner, and what is in it may get\n  \
+                 out. Let one go on past the other by four spacings or more, as a cylinder past its piston or a floor past a hinge.",
+                a.name, b.name
             )
         })
     });
@@ -337,7 +336,7 @@ mod tests {
             panic!("{:?}", told("[0, 0]"));
         };
         assert!(
-            note.contains("wall left ends where wall floor begins"),
+            note.contains("walls left and floor end where the other begins"),
             "{note}"
         );
         assert_eq!(told("[0, -0.1]"), Vec::<String>::new());

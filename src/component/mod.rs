@@ -35,7 +35,7 @@ mod watch;
 pub use error::Error;
 pub use host::HostSettings;
 pub use initialize::Beginning;
-pub use points::{next_point, step_end};
+pub use points::{Followed, next_point, step_end};
 pub use reports::{MassLedger, ParticleView, Statistics, StepReport, Totals};
 pub use snapshot::{read_saved, saved_checksum};
 pub use status::Status;

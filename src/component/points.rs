@@ -4,7 +4,7 @@
 //! of an unbroken one. Of a step of whole nanoseconds they are the nearest numbers to whole nanoseconds, which are the times
 //! on the wire.
 
-use super::{Component, ValueReference};
+use super::{Component, Error, ValueReference};
 use crate::boundary::Steers;
 use crate::scene::{InputTarget, Interpolation, Schedule};
 
@@ -76,27 +76,49 @@ impl Component {
         self.scene().schedules.iter().map(value).unzip()
     }
 
-    /// Slopes of scheduled positions of walls from `time` to the next point [s], for one [`Component::set_input_derivatives`]: along a straight
-    /// line they move steadily; held over steps they would go to each point at full speed and wait there.
-    #[must_use]
-    pub fn scheduled_slopes(&self, time: f64, next: f64) -> (Vec<ValueReference>, Vec<f64>) {
-        let scene = self.scene();
-        let is_position = |schedule: &&Schedule| match schedule.input {
-            InputTarget::WallDrive(n) => {
-                let mut drives = scene.drives();
-                drives.nth(n).is_some_and(|(_, d)| d.steers == Steers::Way)
-            }
-            _ => false,
-        };
-        let schedules = scene.schedules.iter();
+    /// Sets the scheduled inputs for a step from `time` to `next` [s], as runs do: held over it, but for positions of walls along a straight
+    /// line, which get its slope. Held, they would be gone to at full speed and waited for in each step.
+    ///
+    /// # Errors
+    /// As [`Component::set`].
+    pub fn follow_schedules(&mut self, time: f64, next: f64) -> Result<Followed, Error> {
+        let (references, values) = self.scheduled(time);
+        self.set(&references, &values)?;
+        let schedules = self.scene().schedules.iter();
         let linear = schedules.filter(|s| s.interpolation == Interpolation::Linear);
         let slope = |schedule: &Schedule| {
+            let InputTarget::WallDrive(n) = schedule.input else {
+                return None;
+            };
+            let drive = self.scene().drives().nth(n)?.1;
             let change = schedule.value_at(next) - schedule.value_at(time);
-            let reference = self.variables().input(schedule.input);
-            (reference, change / (next - time))
+            // What does not change but for rounding stands, and lets the scene sleep.
+            let stands = change.abs() <= 1e-9 * (drive.stops.1 - drive.stops.0);
+            let slope = if stands { 0.0 } else { change / (next - time) };
+            (drive.steers == Steers::Way).then(|| (self.variables().input(schedule.input), slope))
         };
-        linear.filter(is_position).map(slope).unzip()
+        let (sloped, slopes): (Vec<_>, Vec<_>) = linear.filter_map(slope).unzip();
+        self.set_input_derivatives(&sloped, &slopes)?;
+        Ok(Followed {
+            references,
+            values,
+            sloped,
+            slopes,
+        })
     }
+}
+
+/// What [`Component::follow_schedules`] set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Followed {
+    /// Inputs.
+    pub references: Vec<ValueReference>,
+    /// Their values, in the variables' units.
+    pub values: Vec<f64>,
+    /// Those among them with a slope over the step.
+    pub sloped: Vec<ValueReference>,
+    /// Their slopes, in the variables' units per second.
+    pub slopes: Vec<f64>,
 }
 
 #[cfg(test)]

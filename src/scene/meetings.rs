@@ -12,7 +12,7 @@ pub struct Meeting {
     pub wall: usize,
     /// The one that stands.
     pub with: usize,
-    /// When it is a spacing deep in it [s]; of one that is steered, the time that the way there takes at full speed.
+    /// When it is a spacing deep in it [s]; of one that is steered, the time that the way there takes at full speed, negative if that is backwards.
     pub time: f64,
 }
 
@@ -102,13 +102,17 @@ impl Scene {
             // What only turns is back after a turn.
             let only_turns = motion.velocity == [0.0; D] && motion.rate != 0.0;
             let turn = std::f64::consts::TAU / motion.rate.abs();
-            let until = match &wall.drive {
-                // Nobody knows how far one without an end stop will go.
+            // Ways from where it is drawn; backwards they take negative times.
+            let ends = match &wall.drive {
+                // Nobody knows how far one without end stops will go.
                 Some(drive) if drive.stops.1.is_infinite() => return None,
-                Some(drive) => drive.stops.1 / drive.full,
-                None => self.run.until,
+                Some(drive) => vec![drive.stops.1 / drive.full, drive.stops.0 / drive.full],
+                None => vec![self.run.until],
             };
-            let until = if only_turns { turn.min(until) } else { until };
+            let end_of = |way: f64| match only_turns {
+                true => way.clamp(-turn, turn),
+                false => way,
+            };
             let places_at = |time: f64| -> Vec<Vector<D>> {
                 let (turn, centre) = (motion.rotation_at(time), motion.centre_at(time));
                 let arms = places.iter().map(|x| sub(x, &motion.centre));
@@ -126,15 +130,17 @@ impl Scene {
             }
             let pieces: usize = apart.iter().map(|(_, s)| pieces(s)).sum();
             let most = MOST_TESTS / (movers * places.len() * pieces).max(1) as f64;
-            let poses = (until * speed / (0.5 * dp)).ceil().min(most.ceil());
-            (1..=poses as u64).find_map(|pose| {
-                let time = until * pose as f64 / poses;
-                let places = places_at(time);
-                let with = apart.iter().find(|(_, s)| meets(&places, s))?.0;
-                Some(Meeting {
-                    wall: n,
-                    with,
-                    time,
+            ends.into_iter().map(end_of).find_map(|until| {
+                let poses = (until.abs() * speed / (0.5 * dp)).ceil().min(most.ceil());
+                (1..=poses as u64).find_map(|pose| {
+                    let time = until * pose as f64 / poses;
+                    let places = places_at(time);
+                    let with = apart.iter().find(|(_, s)| meets(&places, s))?.0;
+                    Some(Meeting {
+                        wall: n,
+                        with,
+                        time,
+                    })
                 })
             })
         });
@@ -305,6 +311,10 @@ mod tests {
             "{bar}\nvelocity = [0.05, 0]\ninput = \"speed\"\nstroke = 0.2"
         ));
         assert!((steered[0].time - 3.0).abs() < 0.11, "{steered:?}");
+        let back = meet(&format!(
+            "{bar}\nvelocity = [-0.05, 0]\ninput = \"speed\"\nstroke = 0.1\nstroke_back = 0.2"
+        ));
+        assert!((back[0].time + 3.0).abs() < 0.11, "{back:?}");
         for free in [
             // Up between two ledges, flush with both, and down onto the tank's rims.
             format!("{bar}\nvelocity = [0, 0.2]\n[walls.a]\npolyline = [[0.3, 0.5], [0.1, 0.5]]\n[walls.b]\npolyline = [[0.48, 0.5], [0.36, 0.5]]"),

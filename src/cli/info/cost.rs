@@ -46,8 +46,7 @@ pub(super) fn measure(component: &mut Component) -> Result<Measured, CliError> {
     let watch = Stopwatch::start();
     while let Some(next) = next_point(component.time(), plan.step, plan.until) {
         let time = component.time();
-        let (references, values) = component.scheduled(time);
-        component.set(&references, &values)?;
+        component.follow_schedules(time, next)?;
         // A communication step of a large scene may take an hour.
         let report = component.do_step_watched(time, next - time, &mut |moment| {
             bar.set_position((watch.wall() * 1e3) as u64);

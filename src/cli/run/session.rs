@@ -199,13 +199,11 @@ impl Session {
     fn step_to(&mut self, next: f64) -> Result<(), CliError> {
         let time = self.component.time();
         self.component.keep();
-        let (references, values) = self.component.scheduled(time);
-        self.component.set(&references, &values)?;
-        self.log.inputs(&self.component, &references, &values);
-        let (references, slopes) = self.component.scheduled_slopes(time, next);
-        if !references.is_empty() {
-            self.component.set_input_derivatives(&references, &slopes)?;
-            self.log.slopes(&self.component, &references, &slopes);
+        let set = self.component.follow_schedules(time, next)?;
+        self.log
+            .inputs(&self.component, &set.references, &set.values);
+        if !set.sloped.is_empty() {
+            self.log.slopes(&self.component, &set.sloped, &set.slopes);
         }
         let progress = &mut self.progress;
         let report = self

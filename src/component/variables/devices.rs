@@ -120,7 +120,7 @@ pub(super) fn drive(
             drive.input(),
             way,
             format!(
-                "how far wall {name} is to be {sense} from where it is drawn; it goes there at its full speed"
+                "how far wall {name} is to be {sense} from where it is drawn; it goes there at its full speed, with a slope steadily"
             ),
         ),
     };

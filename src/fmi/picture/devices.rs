@@ -42,15 +42,23 @@ fn rectangle(svg: &Svg<'_>, lower: Point, upper: Point) -> Vec<(f64, f64)> {
 }
 
 fn draw_outflow(svg: &mut Svg<'_>, outflow: &Outflow) {
-    let (lower, upper) = match outflow.place {
-        OutflowPlace::Box { lower, upper } => (lower, upper),
-        OutflowPlace::Outside => (svg.view.lower, svg.view.upper),
+    let (corners, fill, title) = match outflow.place {
+        OutflowPlace::Box { lower, upper } => {
+            let title = format!("outflow {}", outflow.name);
+            (rectangle(svg, lower, upper), OUTFLOW, title)
+        }
+        OutflowPlace::Outside => {
+            let title = format!("outflow {}: all that leaves the domain", outflow.name);
+            (
+                rectangle(svg, svg.view.lower, svg.view.upper),
+                "none",
+                title,
+            )
+        }
     };
-    let corners = rectangle(svg, lower, upper);
     let style = format!(
-        "fill=\"{OUTFLOW}\" fill-opacity=\"0.2\" stroke=\"{OUTFLOW}\" stroke-dasharray=\"5 3\""
+        "fill=\"{fill}\" fill-opacity=\"0.2\" stroke=\"{OUTFLOW}\" stroke-dasharray=\"5 3\""
     );
-    let title = format!("outflow {}", outflow.name);
     svg.line(&corners, true, &style, &title);
     svg.words((corners[0].0, corners[0].1 - 2.0), INFLOW, &title);
 }

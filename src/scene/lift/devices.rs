@@ -156,6 +156,9 @@ impl Lift<'_> {
         if let Some(outside) = raw.outside.as_ref().filter(|at| at.value.0) {
             return self.outside(&outside.place, entry, raw);
         }
+        if raw.outside.is_none() && raw.given.contains(&"outside") {
+            return None;
+        }
         for key in ["lower", "upper"] {
             if !raw.given.contains(&key) {
                 self.problems.report(

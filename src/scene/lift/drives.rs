@@ -115,7 +115,7 @@ impl Lift<'_> {
             start: value(&raw.start).unwrap_or(0.0),
             ramp: value(&raw.ramp).unwrap_or(0.0),
             stops: match forth {
-                Some(forth) => (-back.unwrap_or(0.0), forth),
+                Some(forth) => (back.map_or(0.0, |back| -back), forth),
                 None => (f64::NEG_INFINITY, f64::INFINITY),
             },
         }))

@@ -43,6 +43,9 @@ impl Schedule {
                     return held(next.saturating_sub(1));
                 }
                 let ((t0, v0), (t1, v1)) = (self.points[next - 1], self.points[next]);
+                if v0 == v1 {
+                    return v0;
+                }
                 let w0 = (t1 - t) / (t1 - t0);
                 w0 * v0 + (1.0 - w0) * v1
             }
