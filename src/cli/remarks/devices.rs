@@ -7,7 +7,7 @@ use crate::scene::{InputTarget, OutflowPlace, Scene, Wall, WallGeometry};
 /// Share of its volume by which material may be squeezed by its weight before forces are those of a spring [1].
 const SQUEEZED: f64 = 0.05;
 
-/// Spacings across an outlet from which on the rate of grains is about right [1].
+/// Spacings across an outlet below which its rate was not measured: over 8 to 16 of them it is already too low (docs/limits.md) [1].
 const LEAST_OUTLET: f64 = 8.0;
 
 /// Remarks on schedules, inflows, gates, steered walls and outflows, none for most scenes.
@@ -124,8 +124,8 @@ fn narrow_gates(scene: &Scene) -> Vec<String> {
         let spacings = norm(&way) / scene.numerics.spacing;
         (spacings < LEAST_OUTLET - 1e-9).then(|| {
             format!(
-                "note: gate {}: open it is {:.1} spacings wide; grains pass openings below {LEAST_OUTLET} more slowly than they should, and below 4 hardly at\n  \
-                 all (docs/limits.md). Lower numerics.spacing, or take it for a switch and not for a valve.",
+                "note: gate {}: open it is {:.1} spacings wide; narrow outlets let grains out too slowly (docs/limits.md), and nothing is\n  \
+                 measured below {LEAST_OUTLET}. Use 15 or more: lower numerics.spacing, or take it for a switch and not for a valve.",
                 gate.name, spacings,
             )
         })
